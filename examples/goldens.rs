@@ -1,6 +1,5 @@
-//! Plays the golden scenes on every backend of this machine and compares the results with the committed hashes:
-//! `goldens short|goldens|all`. `tests/cross/run` runs this program on other processors. The hashes and replays are
-//! compiled in, so it needs no files.
+//! Plays the golden scenes on every backend of this machine and compares hashes: `goldens short|goldens|all`.
+//! `tests/cross/run` runs this program on other processors, without files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
@@ -14,7 +13,7 @@ const GOLDENS: &str = include_str!("../tests/goldens.txt");
 const BACKENDS: &str = include_str!("../tests/backends.txt");
 const SHORT: &str = include_str!("../tests/cross/short.txt");
 
-/// Committed replays, each of which must verify and end in the first golden hash of its scene.
+/// Committed replays, which must verify and end in the first golden of their scene.
 const REPLAYS: [(&str, &[u8]); 3] = [
     ("bridge", include_bytes!("../replays/bridge.replay")),
     ("game", include_bytes!("../replays/game.replay")),
@@ -24,7 +23,7 @@ const REPLAYS: [(&str, &[u8]); 3] = [
 /// Seed of the golden scenes.
 const SEED: u64 = 1;
 
-/// For each scene, the expected hashes after given numbers of ticks.
+/// For each scene, expected hashes after numbers of ticks.
 type Hashes<'a> = BTreeMap<&'a str, BTreeSet<(u64, &'a str)>>;
 
 fn main() -> ExitCode {
@@ -51,7 +50,7 @@ fn main() -> ExitCode {
     if all_equal { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Parses the lines of the current semantics: semantics, scene, ticks, hash.
+/// Parses the lines of the current semantics.
 fn hashes(text: &str) -> Hashes<'_> {
     let mut hashes = Hashes::new();
     for line in text.lines() {
@@ -64,7 +63,7 @@ fn hashes(text: &str) -> Hashes<'_> {
     hashes
 }
 
-/// Plays a scene and compares its states with the expected hashes. Prints a line for each comparison.
+/// Plays a scene and compares its states.
 fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(SEED)).expect("the scenes of this crate are valid");
@@ -80,7 +79,6 @@ fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
     equal
 }
 
-/// Verifies a committed replay.
 fn check(name: &str, replay: &[u8]) -> bool {
     let golden = hashes(GOLDENS)[name].first().copied().expect("a golden for each replay");
     let (ticks, end) = match verify::<Sandbox>(replay, &Limits::default()) {
@@ -90,7 +88,6 @@ fn check(name: &str, replay: &[u8]) -> bool {
     (ticks == golden.0) & compare("replay", name, ticks, golden.1, &end)
 }
 
-/// Prints the result of a run and whether it is equal to the golden.
 fn compare(how: &str, name: &str, ticks: u64, known: &str, found: &str) -> bool {
     let verdict = if known == found { "equal" } else { "DIFFERENT" };
     println!("{how:<8} {name:<16} {ticks:>4} {found} {verdict}");

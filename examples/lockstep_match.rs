@@ -1,5 +1,5 @@
-//! Two players in lockstep: a tick is played when the inputs of both have arrived.
-//! Run with `cargo run --example lockstep_match`.
+//! Two players in lockstep: a tick is played when the inputs of both have arrived. `cargo run --example
+//! lockstep_match`.
 
 mod tug;
 
@@ -15,7 +15,7 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // A network in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its own.
+    // In memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its own.
     let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
     let options = PeerOptions::lockstep();
     let (host, guest) = (PeerIdentity::random(), PeerIdentity::random());
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     peers[0].end_at(TICKS);
     let mut now = Duration::ZERO;
     while peers.iter().any(|peer| peer.status() != Some(Status::Closed)) {
-        // Simulated time. A game passes the time since its start instead, and sleeps.
+        // Simulated time. A game passes the time since its start, and sleeps.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {

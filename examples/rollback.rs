@@ -1,5 +1,5 @@
-//! Rollback: a tick is simulated with a predicted input, and again when the actual input arrives. Run with
-//! `cargo run --example rollback`.
+//! Rollback: a tick is simulated with a predicted input, and again when the input arrives. `cargo run --example
+//! rollback`.
 
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SetupError};
@@ -7,7 +7,7 @@ use lockstep2d::math::Vec2;
 use lockstep2d::world::Command;
 use lockstep2d_scenes::Scene;
 
-/// The player's input: a single push in this example.
+/// A single push.
 fn true_input(game: &Sandbox, tick: u64) -> Vec<Command> {
     let pushed = game.world().bodies().filter(|(_, body)| body.is_dynamic()).take(usize::from(tick == 55));
     pushed
@@ -23,15 +23,14 @@ fn main() -> Result<(), SetupError> {
     let scene = Scene::find("box_stack").expect("a scene of the engine");
     let setup = scene.setup(0);
 
-    // A peer that receives the input without delay.
+    // A peer without delay.
     let mut peer = Sandbox::new(&setup)?;
     for tick in 0..60 {
         let input = true_input(&peer, tick);
         peer.step(&[input]);
     }
 
-    // On this machine the inputs of the last ten ticks are late. Until they arrive, the prediction is that the player
-    // does nothing.
+    // The inputs of the last ten ticks are late. Until they arrive, the prediction is that the player does nothing.
     let mut here = Sandbox::new(&setup)?;
     for _ in 0..50 {
         here.step(&[vec![]]);

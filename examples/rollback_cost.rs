@@ -1,6 +1,5 @@
-//! Measures the cost of rollback with touching bodies, in multiples of the time of a step: a save with its hash, and a
-//! frame in which 8 ticks are simulated again. `cargo run --release --example rollback_cost` measures 1000 bodies. An
-//! argument sets another number: `cargo run --release --example rollback_cost 150`.
+//! Measures the cost of rollback in multiples of the time of a step: a save with its hash, and a frame in which 8 ticks
+//! are simulated again. `cargo run --release --example rollback_cost [NUMBER OF BODIES]`.
 
 use std::error::Error;
 use std::time::Duration;
@@ -10,13 +9,13 @@ use lockstep2d::fx;
 use lockstep2d::math::Fx;
 use lockstep2d::world::World;
 
-/// Number of ticks that a rollback simulates again.
+/// Number of ticks of a rollback.
 const TICKS: u32 = 8;
 const ROUNDS: u32 = 41;
 /// Default number of bodies.
 const BODIES: i32 = 1000;
 
-/// Creates a trough, and balls and boxes in 40 columns that fall into it.
+/// A trough, and balls and boxes in 40 columns that fall into it.
 fn pile(bodies: i32) -> Result<World, WorldError> {
     let mut world = World::default();
     for (x, y, half_x, half_y) in [(0, -1, 30, 1), (-12, 20, 1, 20), (12, 20, 1, 20)] {
@@ -51,7 +50,6 @@ fn median<T: Ord + Copy>(mut values: Vec<T>) -> T {
     values[values.len() / 2]
 }
 
-/// Ratio of `part` to `whole` in hundredths.
 fn hundredths(part: Duration, whole: Duration) -> u128 {
     part.as_nanos() * 100 / whole.as_nanos().max(1)
 }
@@ -65,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut steps, mut saves, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     let mut kept = vec![world.save(); 16];
     for _ in 0..ROUNDS {
-        // Eight ticks without late inputs, each saved as in a game with rollback.
+        // Eight ticks without late inputs.
         let (mut step, mut save) = (Duration::ZERO, Duration::ZERO);
         let start = world.save();
         for slot in kept.iter_mut().take(TICKS as usize) {
@@ -77,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         steps.push(step / TICKS);
         saves.push(hundredths(save, step));
-        // Simulates these ticks again, each with its save and hash.
+        // Repeats these ticks.
         let frame = timed(|| {
             world.restore(&start);
             for slot in kept.iter_mut().skip(TICKS as usize) {

@@ -1,5 +1,5 @@
-//! Two players with rollback: missing inputs are guessed, and ticks with wrong guesses are played again.
-//! Run with `cargo run --example rollback_match`.
+//! Two players with rollback: missing inputs are guessed, and ticks with wrong guesses are played again. `cargo run
+//! --example rollback_match`.
 
 mod tug;
 
@@ -15,7 +15,7 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // A network in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its own.
+    // In memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its own.
     let conditions = LinkConditions { loss: 10, ..LinkConditions::latency(Duration::from_millis(60)) };
     let network = Network::new(conditions, 1);
     let options = PeerOptions::rollback();
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     peers[0].end_at(TICKS);
     let mut now = Duration::ZERO;
     while peers.iter().any(|peer| peer.status() != Some(Status::Closed)) {
-        // Simulated time. A game passes the time since its start instead, and sleeps.
+        // Simulated time. A game passes the time since its start, and sleeps.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {

@@ -1,4 +1,4 @@
-//! Two players and a spectator that joins late. Run with `cargo run --example spectator`.
+//! Two players and a spectator that joins late. `cargo run --example spectator`.
 
 mod tug;
 
@@ -20,19 +20,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let mut now = Duration::ZERO;
     loop {
-        // Simulated time. A game passes the time since its start instead, and sleeps.
+        // Simulated time. A game passes the time since its start, and sleeps.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {
             peer.update(now)?;
             while peer.is_due() {
-                // A spectator has no seats, and passes no input.
+                // A spectator has no seats.
                 let inputs = vec![1; peer.seats().len()];
                 peer.advance(&inputs)?;
             }
         }
         if peers.len() == 2 && peers[0].tick() >= 120 {
-            // The spectator receives a state of the match and the inputs since then, and catches up.
+            // The spectator receives a state and the inputs since then.
             let me = PeerIdentity::random();
             peers.push(Peer::watch(&(), options, me, network.port(2), Network::address(1))?);
         }

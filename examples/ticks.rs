@@ -1,5 +1,4 @@
-//! Steps a scene: `ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]`. `.ci/instructions` counts the instructions of
-//! this program.
+//! Steps a scene, for `.ci/instructions`: `ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]`.
 
 use std::process::ExitCode;
 
@@ -21,7 +20,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// Steps the scene named by the arguments and returns a summary.
 fn run(words: &[String]) -> Result<String, String> {
     let (name, count, backend) = match words {
         [name, count] => (name, count, Backend::best()),

@@ -1,4 +1,4 @@
-//! A step allocates nothing once the buffers of the world have grown to the size of the scene.
+//! A step allocates nothing once the buffers of the world have grown.
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::solver::{JointDef, Revolute, Threshold};
 use lockstep2d::world::{Config, Snapshot, World};
 use lockstep2d_scenes::Scene;
 
-/// System allocator that counts allocations and bytes for each thread.
+/// Counts allocations and bytes for each thread.
 mod counting {
     #![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
 
@@ -30,12 +30,10 @@ mod counting {
         BYTES.set(BYTES.get() + bytes);
     }
 
-    /// Returns the number of allocations of this thread.
     pub(super) fn count() -> usize {
         COUNT.get()
     }
 
-    /// Returns the number of bytes that this thread has allocated.
     pub(super) fn bytes() -> usize {
         BYTES.get()
     }
@@ -61,7 +59,7 @@ mod counting {
     }
 }
 
-/// Returns the number of allocations in `ticks` steps that follow `warm_up` steps.
+/// Number of allocations in `ticks` steps after `warm_up` steps.
 fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
     (0..warm_up).for_each(|_| world.step());
     let before = counting::count();
@@ -69,7 +67,7 @@ fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
     counting::count() - before
 }
 
-/// Returns the initial world of a scene, to be stepped without commands.
+/// The initial world of a scene, stepped without commands.
 fn world_of(name: &str) -> World {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game =
@@ -87,7 +85,7 @@ fn the_counter_counts() {
 
 #[test]
 fn piles_and_joints_at_rest_allocate_nothing() {
-    // The hundred polygons come to rest in several seconds. They fall asleep after 5.3 s, later than the test ends.
+    // The hundred polygons fall asleep after 5.3 s.
     for (name, warm_up) in
         [("pyramid", 60), ("large_pyramid", 60), ("joint_grid", 60), ("hundred_polygons", 290)]
     {
@@ -95,7 +93,7 @@ fn piles_and_joints_at_rest_allocate_nothing() {
     }
 }
 
-/// The world checks the loads of a hanging chain's joints against thresholds in every tick.
+/// The joints of a hanging chain are checked in every tick.
 #[test]
 fn joints_with_thresholds_allocate_nothing() {
     let config = Config { sleeping: false, ..Config::default() };
@@ -114,11 +112,11 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// A save packs 52 bytes for each body into the memory of the snapshot that it replaces. A save allocates only lists of
-/// digests, half a byte per body, shape and joint.
+/// A save packs 52 bytes for each body into the memory of the replaced snapshot. It allocates lists of digests, half a
+/// byte per body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {
-    // A pile at rest, a world in which nearly all bodies sleep, and a grid of hinges.
+    // At rest; nearly all asleep; hinges.
     for (name, warm_up) in [("large_pyramid", 60), ("smash", 20), ("joint_grid", 60)] {
         let mut world = world_of(name);
         (0..warm_up).for_each(|_| world.step());
@@ -131,7 +129,7 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
             let per_body = (counting::bytes() - bytes) / world.body_count();
             if tick >= 8 {
                 assert_eq!(stepped - before, 0, "{name}, tick {tick}");
-                // Debug builds pack sleeping contacts once more, for comparison.
+                // Debug builds pack sleeping contacts again, for comparison.
                 let is_lean = cfg!(debug_assertions) || per_body < 5;
                 assert!(is_lean, "{per_body} bytes per body of {name}, tick {tick}");
             }
@@ -139,7 +137,7 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
     }
 }
 
-/// In a changing scene, some buffer reaches a new maximum from time to time, with decreasing frequency.
+/// In a changing scene, buffers reach new maxima from time to time.
 #[test]
 fn a_drum_allocates_only_for_new_records() {
     let growths = allocations(&mut world_of("drum"), 120, 240);

@@ -1,5 +1,5 @@
-//! SIMD backend and thread count never affect results: on every backend of this machine and on 1, 2, 4 and 8 threads,
-//! the large scenes end in the hashes of `tests/backends.txt`.
+//! On every backend of this machine and on 1, 2, 4 and 8 threads, the large scenes end in the hashes of
+//! `tests/backends.txt`.
 
 use core::fmt::Debug;
 use std::sync::Mutex;
@@ -11,8 +11,7 @@ use lockstep2d_tests::sweep;
 
 const HASHES: &str = "tests/backends.txt";
 
-/// Scenes with their numbers of ticks. `smash` runs longer, because its heavy box needs a while to reach the block of
-/// boxes.
+/// Scenes and ticks. The heavy box of `smash` needs a while to reach the block.
 const SCENES: [(&str, u64); 10] = [
     ("large_pyramid", 60),
     ("many_pyramids", 60),
@@ -26,7 +25,7 @@ const SCENES: [(&str, u64); 10] = [
     ("compounds", 60),
 ];
 
-/// Returns the hash at the end of a scene, and the statistics of its last tick.
+/// The hash at the end of a scene, and the statistics of its last tick.
 fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (String, StepStats) {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game =
@@ -40,7 +39,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Runs all scenes with each variant, and expects the same hashes from all variants and from the file.
+/// Expects the hashes of the file from all variants.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -81,15 +80,14 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// Runs with 2, 4 and 8 threads; the test of the backends runs on one thread.
+/// The test of the backends runs on one thread.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
-/// The number of threads changes before every tick. In a game it changes as well: a world uses its threads only in
-/// ticks that they make shorter.
+/// In a game the number of threads changes as well: a world uses threads in ticks that they make shorter.
 #[test]
 #[cfg(feature = "parallel")]
 fn the_number_of_threads_may_change_between_ticks() {
@@ -108,8 +106,7 @@ fn the_number_of_threads_may_change_between_ticks() {
     });
 }
 
-/// Checks the helpers of all sweeps: every case is checked, the first and the last are in the sample, and a case that
-/// fails makes the sweep fail.
+/// A sweep checks every case, samples the first and the last, and fails with any case.
 #[test]
 fn a_sweep_checks_its_ends_and_fails_with_any_case() {
     let sampled = sweep::sample(0..100, 7);

@@ -1,4 +1,4 @@
-//! Characters moved by queries never overlap a shape, never fall through ground, and move according to their settings.
+//! Characters overlap no shape, do not fall through ground, and obey their settings.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// A capsule 1.4 m high, centred at the origin.
+/// 1.4 m high, centred at the origin.
 fn pill() -> Mover {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     Mover::new(pill).expect("valid")
@@ -24,14 +24,14 @@ fn chain(points: &[(Fx, Fx)]) -> World {
     world
 }
 
-/// Returns the distance between a mover and the nearest shape.
+/// Distance of a mover from the nearest shape.
 fn clearance(world: &World, mover: &Mover, position: Vec2<Fx>) -> Fx {
     let probe = mover.probe(position);
     let distances = world.shapes().map(|(id, _)| world.probe_distance(&probe, id).expect("there").distance);
     distances.min().expect("a level")
 }
 
-/// Walks for a number of ticks under gravity, and returns every state.
+/// Walks under gravity, and returns every state.
 fn walk(world: &World, mover: &Mover, from: MoverState, speed: Fx, ticks: u32) -> Vec<MoverState> {
     let mut state = from;
     let step = |_| {
@@ -66,16 +66,15 @@ fn the_character_of_the_scene_enters_nothing() {
     }
     assert_eq!(game.refused(), 0);
     assert!(least > fx!(0.00005), "{least}");
-    // The character has reached the left wall, and has passed the foot of the steep slope, at 20 m, only by a jump.
+    // The left wall was reached, and the foot of the steep slope, at 20 m, passed by a jump.
     assert!((way.0 - fx!(-9.7)).abs() < fx!(0.001), "{way:?}");
     assert!(way.1 > fx!(19.7) && way.1 < fx!(20.6), "{way:?}");
     assert!(trace[595].y < trace[560].y - fx!(0.1), "expected the character to slide down: {:?}", trace[595]);
-    // The character is back on or beyond the plateau, so it has climbed the steps again.
+    // The character has climbed the steps again.
     assert!(trace[870].x < fx!(5), "{:?}", trace[870]);
 }
 
-/// The dynamic character stands at its height above the floor, jumps, pushes the first crate, and reaches the upper
-/// floor.
+/// The dynamic character stands, jumps, pushes the first crate, and reaches the upper floor.
 #[test]
 fn the_character_on_a_spring_leg_gets_about() {
     let scene = Scene::find("spring_leg").expect("a scene");
@@ -90,11 +89,11 @@ fn the_character_on_a_spring_leg_gets_about() {
         trace.push(game.world().body(ids[0]).expect("there").position());
     }
     assert_eq!(game.refused(), 0);
-    // The centre of mass is 0.1 m above the body's origin and 0.9 m above the ground.
+    // The centre of mass is 0.9 m above the ground.
     let rest = trace[25];
     assert!((rest.y - fx!(0.8)).abs() < fx!(0.005), "at rest above the floor: {rest:?}");
     let jump = trace[30..60].iter().map(|place| place.y).max().expect("some");
-    // A jump at 5.5 m/s rises by 1.5 m, and the spring leg changes this height a little.
+    // A jump at 5.5 m/s rises by 1.5 m, changed a little by the spring leg.
     assert!((fx!(2.1)..fx!(2.5)).contains(&jump), "{jump}");
     assert!(pushed > fx!(10.5), "the first crate is pushed: {pushed}");
     let furthest = trace.iter().max_by_key(|place| place.x).expect("some");
@@ -116,25 +115,25 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // The character walks 6 m along the slope, except that its round foot cuts the corner at the bottom.
+            // 6 m along the slope, except that the round foot cuts the corner at the bottom.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");
-            // The character stands without sliding, and walks down without leaving the ground.
+            // Stands without sliding, and walks down without leaving the ground.
             let still = walk(&world, &mover, end, fx!(0), 120)[119];
             assert!(still.position.distance(end.position) < fx!(0.0005), "{degrees}: {still:?} {end:?}");
             let down = walk(&world, &mover, still, fx!(-3), 120);
             assert!(down.iter().all(MoverState::is_on_ground), "{degrees}");
         } else {
             assert!(end.position.y < fx!(0.72), "{degrees}: {end:?}");
-            // A character that is placed on the slope slides down.
+            // Placed on the slope, the character slides down.
             let middle = at(top.x / 2, top.y / 2) + Rot::from_angle(angle).apply_wide(at(fx!(0), fx!(0.71)));
             let mut state = MoverState::at(middle);
             for _ in 0..60 {
                 state.velocity.y -= fx!(1 / 6);
                 state = world.move_character(&mover, &state, QueryFilter::default()).state;
             }
-            // The vertical acceleration is y'' = g sin².
+            // y'' = g sin².
             let sin = Fx::from_num(angle.sin());
             let expected = fx_mul(fx!(5), fx_mul(sin, sin));
             let fallen = middle.y - state.position.y;
@@ -164,7 +163,7 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // The character walks down without leaving the ground; a box must leave a step before it can descend.
+            // A box must leave a step before it can descend.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");
@@ -216,7 +215,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1.5))), &[slab]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
-    // A jump of 3 m/s is too slow: the character stops rising inside the slab, and falls back to the floor.
+    // 3 m/s are too slow: the rise stops inside the slab.
     for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
         state.velocity.y = speed;
         for _ in 0..150 {
@@ -227,7 +226,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     }
 }
 
-/// Random walks through random levels of boxes, circles, capsules and segments: no shape is ever entered.
+/// Random walks through random levels.
 #[test]
 fn random_walks_enter_nothing() {
     let mut rng = Rng::new(3);
@@ -283,7 +282,7 @@ fn random_shape(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// A shape that moves into a character pushes the character out if there is room.
+/// A shape that moves into a character pushes it out.
 #[test]
 fn a_lift_that_comes_up_takes_the_character_along() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);

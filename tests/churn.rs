@@ -1,5 +1,5 @@
-//! Ten thousand bodies are created and destroyed in random order: no stale handle resolves, and a world restored midway
-//! continues bit-identically.
+//! Ten thousand bodies come and go in random order: stale handles do not resolve, and a restored world continues
+//! identically.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, JointId, Polygon, ShapeDef, ShapeId, WorldError};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A world under churn, with the handles of its bodies, of destroyed bodies and shapes, and of all joints ever added.
+/// A world, its bodies, destroyed bodies and shapes, and all joints ever added.
 struct Churn {
     world: World,
     rng: Rng,
@@ -89,7 +89,7 @@ fn ten_thousand_bodies_come_and_go() {
     let mut churn = Churn::new();
     let mut twin: Option<World> = None;
     while churn.spawned < 10_000 {
-        // The number of bodies is limited, because the test is about handles, not about large piles.
+        // The test is about handles, not about large piles.
         while churn.alive.len() > 150 {
             churn.despawn();
         }
@@ -109,7 +109,7 @@ fn ten_thousand_bodies_come_and_go() {
     assert!(churn.gone.len() > 9000 && churn.joints.len() > 500, "{} joints", churn.joints.len());
 }
 
-/// Applies the same changes to both worlds for a while, and expects them to stay equal.
+/// Equal changes keep both worlds equal.
 fn replay_on_twin(churn: &mut Churn, twin: &mut World) {
     for _ in 0..500 {
         let mut other = Churn {

@@ -1,6 +1,5 @@
-//! The contract of determinism, for every scene: two runs, restores from bytes, rollbacks, cleared caches and another
-//! broad phase give the same hash and events after every tick. The final hash is the one in `tests/goldens.txt`, in
-//! every build profile and on every machine.
+//! For every scene, second runs, restores from bytes, rollbacks, cleared caches and another broad phase give equal
+//! hashes and events after every tick. The last hash is the one in `tests/goldens.txt`.
 
 use std::sync::{LazyLock, OnceLock};
 
@@ -11,13 +10,12 @@ use lockstep2d::world::{Events, World};
 use lockstep2d_scenes::{ALL, Scene};
 use lockstep2d_tests::{goldens, sweep};
 
-/// Observable results of a run after every tick.
 struct Trace {
     hashes: Vec<StateHash>,
     events: Vec<Events>,
 }
 
-/// Runs a scene; `perturb` runs before each tick and must not affect results.
+/// `perturb` runs before each tick and must not affect results.
 fn trace(scene: &Scene, ticks: u64, mut perturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
     let mut game =
         Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
@@ -45,11 +43,10 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
     assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
 }
 
-/// Largest number of ticks for which runs are compared in the long run.
+/// Largest number of compared ticks in the long run.
 const TICKS_MAX: u64 = 300;
 
-/// The trace of an undisturbed run of a scene, up to the tick of its golden. The first test that needs a scene runs
-/// it, and later tests reuse the trace.
+/// The trace of an undisturbed run up to the golden, shared by the tests.
 fn undisturbed(scene: &Scene) -> &'static Trace {
     static TRACES: LazyLock<Vec<OnceLock<Trace>>> =
         LazyLock::new(|| ALL.iter().map(|_| OnceLock::new()).collect());
@@ -57,9 +54,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene, with a number of ticks and the trace of an undisturbed run. The number of ticks is
-/// that of the scene's golden, but at most [`TICKS_MAX`] in the long run, and otherwise at most 150, or 30 for a large
-/// scene.
+/// Calls `hold` for every scene, with the ticks of its golden, but at most [`TICKS_MAX`] in the long run, and otherwise
+/// at most 150, or 30 for a large scene.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });
@@ -80,8 +76,7 @@ fn two_runs_agree() {
     });
 }
 
-/// At every tick, the world is replaced by one that is decoded from its bytes. At the sampled size, the world of a
-/// large scene is replaced at every fifth tick only.
+/// At every tick, the world is decoded from its bytes; at the sampled size, at every fifth tick of a large scene.
 #[test]
 fn restoring_from_bytes_continues_bit_identically() {
     each_scene(|scene, ticks, reference| {
@@ -131,7 +126,7 @@ fn scratch_may_be_cleared_before_any_tick() {
 #[test]
 fn the_broad_phase_makes_no_difference() {
     each_scene(|scene, ticks, reference| {
-        // Brute force compares each shape with every other, so the largest scenes run for five ticks only.
+        // Brute force compares each shape with every other.
         let ticks = if shape_count(scene) > 2000 { 5 } else { ticks };
         let brute_force = |tick: u64, game: &mut Sandbox| {
             if tick == 0 {
@@ -142,7 +137,7 @@ fn the_broad_phase_makes_no_difference() {
     });
 }
 
-/// Comparing two runs misses an error that both runs make; a committed hash catches it.
+/// A committed hash catches an error that two runs make alike.
 #[test]
 fn every_scene_ends_in_its_golden() {
     let goldens = goldens();

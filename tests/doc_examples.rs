@@ -1,12 +1,8 @@
 //! Every public type is shown in use by an example of the documentation.
 //!
-//! A type is shown if Rust code in the documentation of its own top-level module uses its name. The best place is the
-//! documentation of the type itself, or of the item through which users get the type. Each of the other crates counts
-//! as one module. Imports do not count, nor does text that readers do not see as code: hidden lines, comments and
-//! literals. `cargo test --doc` checks that the code compiles and is correct.
-//!
-//! Every type that is declared `pub` counts. The lint `unreachable_pub` makes sure that users can name all of these
-//! types.
+//! A type is shown if Rust code in the documentation of its own top-level module uses its name. Each of the other
+//! crates counts as one module. Imports, hidden lines, comments and literals do not count. The lint `unreachable_pub`
+//! makes sure that users can name all types that are declared `pub`.
 
 mod source;
 
@@ -14,20 +10,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use source::{Source, files, tokens};
 
-/// Folders whose public types need an example: the library, the command, the renderer and the viewer.
 const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
-/// Public types without an example, and why.
+/// Types without an example, and why.
 const WITHOUT: &[(&str, &str, &str)] = &[
     ("replay", "KeyframesFlaw", "printed as the reason in a `KeyframesError`, not handled"),
     ("report", "ReportFlaw", "printed as the reason in a `ReportError`, not handled"),
     ("crates/cli", "RandomError", "opaque: printed when the system has no random numbers"),
 ];
 
-/// Macro of `src/body/arena.rs` that declares a public type, whose name is on a line of its own.
+/// Declares a public type whose name is on a line of its own.
 const TYPE_MACRO: &str = "define_handle! {";
 
-/// The public types of a top-level module, and the code of the examples in its documentation.
 #[derive(Default)]
 struct Module {
     types: Vec<String>,
@@ -35,7 +29,6 @@ struct Module {
     shown: BTreeSet<String>,
 }
 
-/// Reads the documentation comments of a file.
 fn read(text: &str, module: &mut Module) {
     let (mut code, mut in_code, mut in_block) = (String::new(), false, false);
     let (mut hidden, mut in_macro) = (false, false);
@@ -65,7 +58,7 @@ fn read(text: &str, module: &mut Module) {
     }
 }
 
-/// Whether `cargo test --doc` compiles a code block of this kind. Other kinds that it compiles do not occur here.
+/// Whether `cargo test --doc` compiles such a code block.
 fn is_tested(kind: &str) -> bool {
     kind.split(',').all(|word| matches!(word.trim(), "" | "rust" | "no_run" | "should_panic"))
 }
@@ -75,7 +68,6 @@ fn is_hidden_line(line: &str) -> bool {
     line == "#" || line.starts_with("# ")
 }
 
-/// Returns the name of the type that a line declares.
 fn declared(line: &str) -> Option<String> {
     let rest = ["struct ", "enum ", "trait ", "union "].iter().find_map(|kind| {
         let line = line.strip_prefix("pub ")?;
@@ -102,7 +94,7 @@ fn modules(files: &[Source]) -> BTreeMap<String, Module> {
     modules
 }
 
-/// Returns the types that no example shows, as pairs of module and type.
+/// Types that no example shows, with their modules.
 fn not_shown(modules: &BTreeMap<String, Module>) -> Vec<(&str, &str)> {
     let missing = modules.iter().flat_map(|(name, module)| {
         let types = module.types.iter().filter(|found| !module.shown.contains(*found));
@@ -116,7 +108,7 @@ fn every_public_type_is_shown() {
     let all: Vec<_> = FOLDERS.iter().flat_map(|folder| files(folder, &["rs"])).collect();
     let modules = modules(&all);
     let count: usize = modules.values().map(|module| module.types.len()).sum();
-    // A much smaller number means that declarations are not recognised.
+    // Otherwise declarations are not recognised.
     assert!(count > 200, "only {count} public types");
     let missing = not_shown(&modules);
     let excused: Vec<_> = WITHOUT.iter().map(|&(module, name, _)| (module, name)).collect();

@@ -1,4 +1,4 @@
-//! Pictures show the state of the world, are reproducible, and do not change the world.
+//! Pictures show the world, are reproducible, and do not change it.
 
 use lockstep2d::body::{BodyDef, BodyKind, Geometry, Name, Polygon, ShapeDef, WorldError};
 use lockstep2d::draw::{
@@ -11,8 +11,7 @@ use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
-/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points. Gravity is
-/// tilted, so that friction holds the box.
+/// A ground, a box at rest on it, a pendulum, and a lift. Gravity is tilted, so that friction holds the box.
 fn scene() -> World {
     build_scene().expect("a valid scene")
 }
@@ -46,7 +45,7 @@ fn every_layer_has_its_primitives() {
     let found = primitives(&scene(), Layers::ALL);
     let expected = [
         (Style::Fixed, 1),
-        // A box, and a circle with its radius line.
+        // A box, and a circle with a radius.
         (Style::Dynamic, 3),
         (Style::Kinematic, 1),
         (Style::FatBox, 4),
@@ -54,7 +53,7 @@ fn every_layer_has_its_primitives() {
         (Style::ContactPoint(ContactProximity::Speculative), 0),
         (Style::ContactNormal(ContactProximity::Touching), 2),
         (Style::ContactNormal(ContactProximity::Speculative), 0),
-        // Fixed bodies such as the post have no arm.
+        // Fixed bodies have no arm.
         (Style::JointArm, 1),
         (Style::JointAnchor, 2),
         (Style::JointGap, 1),
@@ -167,7 +166,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     world.despawn(boxes[2]).unwrap();
     assert_eq!(primitives(&world, layers), expected, "the same points, forces and colours");
 
-    // The next ticks equal those of a world without cached contacts.
+    // The next ticks equal those without cached contacts.
     let mut restored = world.clone();
     restored.restore(&world.save());
     (0..30).for_each(|_| {
@@ -177,8 +176,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     });
 }
 
-/// Joins a ball to a fixed body 3 m away, inside the body's sensor with a radius of 10 m. Returns the world and the
-/// figures of the legend.
+/// A ball joined to a fixed body 3 m away, inside that body's sensor, and the figures of the legend.
 #[expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();
@@ -277,12 +275,11 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    // The four bodies that have shapes, and the two dynamic bodies once more, as islands.
+    // Four bodies with shapes, and the two dynamic ones again, as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
-    // The bodies, 12 styles (boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals,
-    // points, forces, friction and the solver's graph colour), and the scale bar.
+    // The bodies, 12 styles, and the scale bar.
     assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
-    // The ids of all bodies except the ground, whose centre lies below the picture, and the error of the joint.
+    // The ids of bodies other than the ground, whose centre is below the picture, and the error of the joint.
     assert_eq!(picture.matches(" dy=\"-3\">").count(), 4 + 1);
     assert!(picture.len() < 8000, "{} bytes", picture.len());
 }
@@ -323,7 +320,7 @@ fn the_fit_shows_the_ground_below_what_falls() {
     assert!(window.upper.y < fx!(12), "{window:?}");
 }
 
-/// Expects tags to be closed in order, attributes to be quoted, and text to contain no raw markup.
+/// Tags are closed in order, attributes quoted, and text has no raw markup.
 fn check_well_formed(document: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = document;

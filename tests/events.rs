@@ -1,4 +1,4 @@
-//! Contact events: each contact, however short, has one begin event, and one end event when it ends.
+//! Each contact, however short, has one begin event, and one end event when it ends.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,6 @@ use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::world::{Config, ContactEvent, World};
 use lockstep2d_scenes::Scene;
 
-/// Updates the set of touching pairs from the events of a tick.
 fn follow(world: &World, touching: &mut BTreeSet<ContactEvent>) {
     for event in &world.events().contact_end {
         assert!(touching.remove(event), "{event:?} ended without having begun");
@@ -43,7 +42,7 @@ fn begins_and_ends_are_balanced_and_sorted() {
     }
 }
 
-/// A ball hits another one off centre and separates from it before the next tick.
+/// A ball hits another one off centre and separates before the next tick.
 #[test]
 fn a_touch_between_two_ticks_is_told() {
     let mut rng = Rng::new(1);

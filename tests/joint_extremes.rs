@@ -1,5 +1,4 @@
-//! Extreme joints: with any valid joint settings and body positions, the world stays valid and a restored world
-//! continues identically.
+//! With extreme joint settings and positions, the world stays valid and a restored world continues identically.
 
 use lockstep2d::body::{BodyDef, BodyId, MassSource};
 use lockstep2d::fx;
@@ -10,7 +9,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::World;
 
-/// Returns a small, ordinary or maximal size.
+/// Small, ordinary or maximal.
 fn size(rng: &mut Rng, most: Fx) -> Fx {
     match rng.below(4) {
         0 => rng.range(Fx::ZERO, fx!(0.001)),

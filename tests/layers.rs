@@ -1,9 +1,9 @@
-//! Module layering: each module of the library uses only the modules below it. The test reads `use` lines and paths in
-//! the code, including unit tests, and fails on any path that leads to a higher layer.
+//! Each module of the library uses only the modules below it. The test reads `use` lines and paths, including unit
+//! tests.
 //!
-//! Inside a module that has folders, each folder uses only the folders that are listed for it, and files of different
-//! folders do not depend on each other in a circle. The tests of folders leave out unit tests, and count a path through
-//! a re-export as a path to the file that defines the item. They read only paths: calls of methods are not found.
+//! Inside a module with folders, each folder uses only the folders listed for it, and files of different folders do not
+//! depend on each other in a circle. These tests leave out unit tests, and count a re-export as a path to the defining
+//! file. Calls of methods are not found.
 //!
 //! ```text
 //!             peer
@@ -26,10 +26,9 @@ mod source;
 use paths::{Crate, module_of, modules};
 use source::{Token, files, tokens};
 
-/// Modules or folders, each with the others that it may use.
 type Rules = &'static [(&'static str, &'static [&'static str])];
 
-/// Every module of the library with the modules that it may use besides itself.
+/// Each module with the modules that it may use.
 const LAYERS: Rules = &[
     ("math", &[]),
     ("codec", &[]),
@@ -71,8 +70,7 @@ const LAYERS: Rules = &[
     ),
 ];
 
-/// For each module with folders: each of its folders, and the other folders of the module that it may use. `.` stands
-/// for the files that are not in a folder.
+/// Each folder of a module with the folders that it may use. `.` stands for the files outside of folders.
 const FOLDERS: &[(&str, Rules)] = &[
     (
         "collision",
@@ -87,7 +85,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "solver",
         &[
-            // The files of the solver itself list the stages of a sub-step, which are in these folders.
+            // The solver's own files list the stages of a sub-step.
             (".", &["contact", "joint", "integrate", "row"]),
             ("row", &["."]),
             ("contact", &[".", "row"]),
@@ -98,7 +96,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "world",
         &[
-            // The state stores sleeping contacts with their packed form. The world stores its caches and its digest.
+            // Sleeping contacts are stored in their packed form, and the world stores caches and digest.
             (".", &["cache", "snapshot"]),
             ("cache", &["."]),
             ("islands", &[".", "cache"]),
@@ -111,7 +109,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     ),
 ];
 
-/// Items of the crate root that are not modules: every module may use them.
+/// Items of the crate root for every module.
 const ROOT: &[&str] = &["fx", "SEMANTICS"];
 
 #[test]
@@ -120,7 +118,7 @@ fn every_module_uses_only_the_layers_below_it() {
     let mut checked = 0;
     for file in files("src", &["rs"]) {
         let place = module_of(&file.path);
-        // The root declares all modules. Its constants use none of them.
+        // The root declares all modules.
         if !place.is_empty() {
             checked += 1;
             wrong
@@ -156,7 +154,7 @@ fn files_of_different_folders_form_no_circle() {
     assert!(wrong.is_empty(), "files that depend on each other:\n{}", wrong.join("\n"));
 }
 
-/// Canary of the folder rules: forbidden paths and circles must be found, and allowed ones must not.
+/// Canary of the folder rules.
 #[test]
 fn wrong_folders_and_circles_are_found() {
     let rules: Rules = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
@@ -186,12 +184,12 @@ fn wrong_folders_and_circles_are_found() {
         assert!(uses > 0, "{used}");
     }
     assert_eq!(with("mod tests { use crate::m::Shown; }", "pub struct Shown;"), (0, 0), "a test");
-    // Each path is allowed by itself, but together they form a circle.
+    // A circle of allowed paths.
     let circle = [root, a, b, ("src/m/b/y.rs", "use crate::m::c::Base; pub struct Shown;")];
     let there = ("src/m/c.rs", "use super::b::Shown; pub struct Base;");
     let there_and_back: Vec<_> = circle.iter().copied().chain([there]).collect();
     assert_eq!(wrong(&there_and_back), (0, 1));
-    // A re-export that its own module uses is a dependency of that module.
+    // A re-export that its own module uses.
     let own = [
         ("src/m/mod.rs", "mod b; pub struct Base(b::Holder);"),
         ("src/m/b/mod.rs", "mod y; pub use y::Shown; pub struct Holder(Shown);"),
@@ -204,7 +202,7 @@ fn wrong_folders_and_circles_are_found() {
     assert_eq!(wrong(&same_folder), (0, 0), "a circle within a folder");
 }
 
-/// Returns the folder of a file of a module: `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
+/// `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
 fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     let is_folder = |name: &String| {
         place.len() > 2
@@ -213,7 +211,7 @@ fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     place.get(1).filter(|name| is_folder(name)).map_or(".", String::as_str)
 }
 
-/// Returns the paths in a module's files that lead to a folder that the files must not use.
+/// Paths to folders that must not be used.
 fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     let mut wrong = Vec::new();
     for place in sources.modules().filter(|place| place.first().is_some_and(|name| name == module)) {
@@ -235,7 +233,7 @@ fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     wrong
 }
 
-/// Returns the dependency circles of a module's files that are not within one folder.
+/// Circles that are not within one folder.
 fn circles(sources: &Crate, module: &str) -> Vec<String> {
     let circles = sources
         .circles()
@@ -250,7 +248,7 @@ fn circles(sources: &Crate, module: &str) -> Vec<String> {
     circles.filter(spans).map(named).collect()
 }
 
-/// Canary of the layers: a forbidden use must be found in every form that a path can have.
+/// Canary of the layers: every form of a path.
 #[test]
 fn wrong_directions_are_found() {
     let found = |place: &[&str], code: &str| {
@@ -292,7 +290,7 @@ fn wrong_directions_are_found() {
     assert_eq!(found(&["toys"], ""), 1, "a module without a layer is an error");
 }
 
-/// Returns the uses of modules that a module must not use, each as `line: module uses module`.
+/// Forbidden uses, each as `line: module uses module`.
 fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     let module = place[0].as_str();
     let Some((_, below)) = LAYERS.iter().find(|(name, _)| *name == module) else {
@@ -304,12 +302,11 @@ fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     wrong.map(|used| format!("{}: {module} uses {}", used.line, used.text)).collect()
 }
 
-/// Returns every name that follows a path to the crate root: `crate::`, or as many `super::` as lead to the root.
-/// `depth` is the number of `super::` that lead from the file to the root.
+/// Every name that follows a path to the crate root: `crate::`, or `depth` times `super::`.
 fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut used = Vec::new();
-    // For each open brace: whether it opens an inline module.
+    // Whether each open brace opens an inline module.
     let mut braces = Vec::new();
     for at in 0..tokens.len() {
         match text(at) {
@@ -329,7 +326,7 @@ fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     used
 }
 
-/// Returns the first names of a path's tails: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
+/// First names of a path's tails: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
 fn heads(tokens: &[Token], start: usize) -> Vec<Token> {
     if tokens[start].text != "{" {
         return vec![tokens[start].clone()];

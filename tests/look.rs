@@ -1,4 +1,4 @@
-//! Inspection functions agree with theory: contact forces, islands, joint errors, boxes of the broad phase.
+//! Inspection functions agree with theory.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
@@ -26,7 +26,7 @@ fn run(world: &mut World, ticks: u32) {
     (0..ticks).for_each(|_| world.step());
 }
 
-/// Returns the sums of the normal and friction forces of all contact points.
+/// Sums of the normal and friction forces.
 fn sum_of_forces(world: &World) -> (Fx, Fx) {
     let forces = world.contacts().flat_map(|contact| contact.forces().map(|(_, f)| f).collect::<Vec<_>>());
     forces.fold((Fx::ZERO, Fx::ZERO), |(normal, friction), f| (normal + f.normal, friction + f.friction))
@@ -75,7 +75,7 @@ fn each_box_of_a_stack_bears_those_above() {
     }
 }
 
-/// `F = m a`: on a box that slides to the right, friction acts to the left.
+/// On a box that slides to the right, friction acts to the left.
 #[test]
 fn friction_is_what_slows_a_sliding_box() {
     let mut world = empty();
@@ -89,8 +89,7 @@ fn friction_is_what_slows_a_sliding_box() {
     let slowed = (world.body(body).unwrap().velocity().x - before) * 60;
     assert!(slowed < fx!(-1), "expected the box to be slowed by friction");
     let contact = world.contacts().next().unwrap();
-    // The normal points up, from the ground, which has the lower slot, to the box. Friction is measured along the
-    // normal rotated counter-clockwise by a quarter turn, which points left.
+    // The normal points up, to the box. Friction is measured along the normal rotated counter-clockwise, to the left.
     assert!(contact.manifold.normal.y > 0);
     let (_, friction) = sum_of_forces(&world);
     assert_near(friction, -mass * slowed, fx!(0.001));
@@ -205,8 +204,7 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
     assert_eq!(world.broad_phase_boxes(), []);
 }
 
-/// The scene has two squares on a slab, of which the upper one is welded to the lower one, and a distant square with a
-/// filter joint to the upper one.
+/// Two squares on a slab, welded to each other, and a distant square with a filter joint to the upper one.
 #[test]
 fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
     let mut world = empty();
@@ -228,7 +226,6 @@ fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
     }
     let counts = [slab, lower, upper, far].map(|body| world.contacts_of(body).count());
     assert_eq!(counts, [1, 2, 1, 0]);
-    // The slab carries both squares.
     let load: Fx = world
         .contacts_of(slab)
         .flat_map(|contact| contact.forces().map(|(_, force)| force.normal).collect::<Vec<_>>())

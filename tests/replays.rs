@@ -1,4 +1,4 @@
-//! The committed replays verify, end in the committed hashes, and equal what their scenes record.
+//! Committed replays verify, end in the committed hashes, and equal what their scenes record.
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, Verdict, verify};
@@ -35,7 +35,7 @@ fn every_replay_matches_and_ends_in_its_golden() {
     });
 }
 
-/// Recording a scene again gives the committed file byte for byte, so replays and scenes cannot drift apart.
+/// Recording a scene again gives the committed file.
 #[test]
 fn every_replay_is_what_its_scene_records() {
     sweep::for_each(replays(), |(name, bytes)| {

@@ -1,13 +1,13 @@
-//! Rules of the code base that no lint checks, each with a canary that violates it.
+//! Rules that no lint checks, each with a canary that violates it.
 
 mod source;
 
 use source::{Source, Token, files, tokens};
 
-/// Largest number of lines of a source file: a longer file has more than one subject.
+/// A longer file has more than one subject.
 const LINES_MAX: usize = 400;
 
-/// Words that are not allowed in the library, and why.
+/// Not allowed in the library, and why.
 const BANNED: &[(&str, &str)] = &[
     ("f32", "floating point differs between machines"),
     ("f64", "floating point differs between machines"),
@@ -25,15 +25,14 @@ const BANNED: &[(&str, &str)] = &[
     ("eprintln", "a library does not print"),
 ];
 
-/// Floating-point types.
 const FLOATS: &[&str] = &["f32", "f64"];
-/// Paths that may use floating point: drawing is not simulation, and a serializer must implement methods for it.
+/// Drawing is not simulation, and a serializer must implement methods for floats.
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
-/// The only file that may use a clock: it measures whether ticks take less time on one thread or on all.
+/// Measures whether ticks take less time on one thread or on all.
 const ALLOWED_CLOCK: &str = "src/threads/team.rs";
 
-/// Files that may use `unsafe`: SIMD instructions, prefetches, and data shared between threads.
+/// SIMD instructions, prefetches, and data shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/x86.rs",
     "src/simd/x86/avx2.rs",
@@ -47,15 +46,14 @@ const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/shared.rs",
 ];
 
-/// Comment that gives the reason for an `unsafe`.
+/// Gives the reason for an `unsafe`.
 const REASON: &str = "// SAFETY: ";
-/// Largest number of lines from this comment down to the `unsafe`.
+/// Lines from this comment down to the `unsafe`.
 const REASON_ABOVE: usize = 3;
 
-/// Folders that define state.
 const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/simd/", "src/solver/", "src/world/"];
 
-/// Top-level folders that occur in paths of a single machine.
+/// Top-level folders of paths of a single machine.
 const MACHINE_FOLDERS: &[&str] = &["home", "root", "Users", "tmp", "mnt", "opt", "srv", "var", "work"];
 
 fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String> {
@@ -97,7 +95,7 @@ fn may_be_unsafe(file: &Source) -> bool {
     ALLOWED_UNSAFE.contains(&file.path.as_str())
 }
 
-/// Finds `unsafe` without a reason. An `unsafe fn` needs none: its callers give the reason.
+/// An `unsafe fn` needs no reason: its callers give it.
 fn unexplained_unsafe(file: &Source) -> Vec<String> {
     let lines: Vec<_> = file.text.lines().collect();
     let explained = |line: usize| {
@@ -109,7 +107,7 @@ fn unexplained_unsafe(file: &Source) -> Vec<String> {
     wrong.map(|pair| format!("{}: unsafe without a reason", pair[0].line)).collect()
 }
 
-/// Finds `usize` in a type that derives its encoding, because its width depends on the machine.
+/// The width of `usize` and `isize` depends on the machine.
 fn machine_width_in_state(file: &Source) -> Vec<String> {
     let tokens = tokens(&file.text);
     let mut wrong = Vec::new();
@@ -122,7 +120,7 @@ fn machine_width_in_state(file: &Source) -> Vec<String> {
         if list.filter(is("Serialize")).count() == 0 {
             continue;
         }
-        // The item ends with its closing brace, or with a semicolon if it has no braces.
+        // The item ends with its closing brace, or with a semicolon.
         let mut depth = 0;
         let item = tokens[at..].iter().skip_while(|token| token.text != "]").skip(1).take_while(|token| {
             depth += i32::from(matches!(token.text.as_str(), "{" | "(" | "["));

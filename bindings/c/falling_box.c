@@ -1,5 +1,4 @@
-/* A box falls on the ground. Prints its height every half second, and the hash of the last state, which is the same on
- * every machine. */
+/* A box falls on the ground. Prints its height every half second, and the hash of the last state. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

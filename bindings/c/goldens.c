@@ -1,4 +1,4 @@
-/* Verifies the replays that are named on the command line, and prints `name verdict ticks hash` for each. */
+/* Verifies the replays named on the command line, and prints `name verdict ticks hash` for each. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

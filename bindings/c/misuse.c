@@ -1,5 +1,5 @@
-/* Misuses the API: wrong, stale, freed and null handles, null and short buffers, wrong sizes, threads. Every call has
- * to return the expected status code. To be run under AddressSanitizer and valgrind. */
+/* Misuses the API: wrong handles, null pointers, short buffers, wrong sizes, threads. Calls have to return the expected
+ * codes. To be run under AddressSanitizer and valgrind. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>

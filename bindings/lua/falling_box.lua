@@ -1,5 +1,4 @@
---- A box falls on the ground, as in bindings/c/falling_box.c. The last line of the output has the hash that the C
---- program prints.
+--- A box falls on the ground, as in bindings/c/falling_box.c, and ends with the same hash.
 local ls = require("lockstep2d")
 
 local out = ls.out("handle")

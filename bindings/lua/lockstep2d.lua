@@ -1,11 +1,11 @@
---- The flat API of lockstep2d for LuaJIT and LÖVE. Functions, structs and constants have the names of lockstep2d.h
---- without their prefix: `ls.world_step(world)`, `ls.DYNAMIC`. `lockstep2d.h` and the library have to be in the folder
---- of this file, or in the folder of the LÖVE game. The library may also be on the search path of the system.
+--- The flat API of lockstep2d for LuaJIT and LÖVE. Names are those of lockstep2d.h without their prefix:
+--- `ls.world_step(world)`, `ls.DYNAMIC`. The header and the library have to be in the folder of this file or of the
+--- LÖVE game, the library alternatively on the search path of the system.
 ---
---- A function that returns a status raises an error if it fails, and otherwise returns whether there was something to
---- return (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
+--- A function with a status raises an error if it fails, and otherwise returns whether there was something to return
+--- (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
 ---
---- Numbers that enter the state are integers (`ls.fx`). Lua's own numbers are floats: use them only for drawing.
+--- Numbers that enter the state are integers (`ls.fx`). Lua's own numbers are floats, for drawing.
 local ffi = require("ffi")
 
 local ls = {}
@@ -45,7 +45,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- `ffi.cdef` has no preprocessor, so that its directives and the code for C++ are removed, and the comments with them.
+-- `ffi.cdef` has no preprocessor.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
 assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")
@@ -81,7 +81,7 @@ setmetatable(ls, {
     end,
 })
 
---- A struct with its defaults: `ls.make("body_def", ls.DYNAMIC)` calls `ls2d_body_def_init` with the other arguments.
+--- A struct with its defaults: `ls.make("body_def", ls.DYNAMIC)` calls `ls2d_body_def_init`.
 function ls.make(struct, ...)
     local made = ffi.new("ls2d_" .. struct)
     local arguments = { ... }
@@ -90,12 +90,12 @@ function ls.make(struct, ...)
     return made
 end
 
---- Memory for a result, whose value is at index 0: `ls.out("handle")`, `ls.out("body")`.
+--- Memory for a result, at index 0: `ls.out("handle")`, `ls.out("body")`.
 function ls.out(type)
     return ffi.new("ls2d_" .. type .. "[1]")
 end
 
---- A fixed-point number, from a whole number or from decimal text: `ls.fx(3)`, `ls.fx("0.25")`.
+--- A fixed-point number from a whole number or decimal text: `ls.fx(3)`, `ls.fx("0.25")`.
 function ls.fx(value)
     if type(value) == "string" then
         local number = ls.out("fx")
@@ -111,7 +111,7 @@ function ls.fx(value)
     return ffi.new("int64_t", value) * 4294967296LL
 end
 
---- A fixed-point number as a Lua number, for drawing.
+--- A Lua number, for drawing.
 function ls.number(fx)
     return tonumber(fx) / 4294967296
 end

@@ -1,8 +1,8 @@
---- Plays a game in a match: fulfils the requests of the session of `ls2d_match_host` or `ls2d_match_join`.
+--- Plays a game in a match of `ls2d_match_host` or `ls2d_match_join`.
 ---
 --- The game has
---- - `step(inputs, absent)`: advances by a tick with the inputs of all seats, a string; `absent` has a bit for each
----   seat that nobody plays;
+--- - `step(inputs, absent)`: advances by a tick. `inputs` of all seats are a string, `absent` has a bit for each empty
+---   seat;
 --- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores it, frees the copy;
 --- - `hash()`: an `ls2d_hash` of the whole state;
 --- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
@@ -16,15 +16,15 @@ Driver.__index = Driver
 
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
---- Opens a match, or joins one if there is a `contact`: the address of a participant, as a string. `settings`
---- are fields of `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` has 28
---- random bytes, which systems without /dev/urandom need.
+--- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
+--- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` has 28 random bytes,
+--- for systems without /dev/urandom.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     for field, value in pairs(options.settings or {}) do
         config[field] = value
     end
-    -- Random numbers for `peer`, `key` and `secret`, which nobody else may be able to guess.
+    -- For `peer`, `key` and `secret`, which must not be guessable.
     local random = options.random
     if not random then
         local file = io.open("/dev/urandom", "rb")
@@ -69,8 +69,8 @@ function Driver:receive(now, from, packet)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
---- Advances the match to the time `now`, in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
---- of your own seats, as a string; `seats` is their number. Returns the events, as a list of tables.
+--- Advances the match to the time `now` in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
+--- of your own seats as a string; `seats` is their number. Returns a list of events.
 function Driver:update(now, read)
     ls.match_update(self.match, now * 1e6)
     local events = {}
@@ -125,8 +125,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Returns three numbers of ticks: all ticks played, including those with guessed inputs; the ticks whose inputs are
---- final; and the ticks played with final inputs. All are 0 before the peer has joined.
+--- Numbers of ticks: all ticks played, ticks with final inputs, and ticks played with final inputs. 0 before the peer
+--- has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0
@@ -156,7 +156,7 @@ function Driver:resume(tick, state)
     self:keep(tick)
 end
 
---- Returns the tick of the newest kept state up to `tick`, or nil.
+--- The newest kept tick up to `tick`, or nil.
 function Driver:newest(tick)
     local newest
     for kept in pairs(self.saves) do
@@ -183,7 +183,7 @@ local answers = {
     [ls.REQUEST_CHECKSUM] = function(self, tick)
         ls.match_report_hash(self.match, tick, self.saves[tick].hash)
     end,
-    -- Keeps the newest state up to this tick, for peers that join.
+    -- The newest state up to this tick is kept, for peers that join.
     [ls.REQUEST_FORGET] = function(self, tick)
         local newest = self:newest(tick)
         self:forget(function(kept) return newest ~= nil and kept < newest end)
@@ -196,7 +196,7 @@ function Driver:fulfil()
     end
 end
 
--- Offers the newest final state as bytes, and then restores the current state of the game.
+-- Offers the newest final state as bytes.
 function Driver:offer_state()
     local _, _, confirmed = self:ticks()
     local tick = self:newest(confirmed)

@@ -1,4 +1,4 @@
---- Tests that misuse of the API raises errors with an explanation, and does not crash.
+--- Misuse of the API raises errors with an explanation.
 local ls = require("lockstep2d")
 
 local function fails(what, pattern, action, ...)

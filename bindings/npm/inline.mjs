@@ -1,6 +1,6 @@
-// Writes each wasm module as a JavaScript module with its compressed bytes, which every bundler can handle.
+// Writes each wasm module as a JavaScript module with its compressed bytes.
 //
-// `zopfli` (the Debian package) writes the same gzip format as zlib, in about 5 % fewer bytes. It takes a minute.
+// `zopfli` (a Debian package) writes about 5 % fewer bytes than zlib. It takes a minute.
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";

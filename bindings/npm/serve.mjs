@@ -10,7 +10,7 @@ const TYPES = {
     ".wasm": "application/wasm",
 };
 
-/** Serves a folder, given as a URL that ends with a slash. `/blank.html` is an empty page. */
+/** Serves the folder of a URL that ends with a slash. `/blank.html` is an empty page. */
 export async function serve(root) {
     const server = createServer((request, response) => {
         const { pathname } = new URL(request.url, "http://localhost");

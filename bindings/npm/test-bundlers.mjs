@@ -1,6 +1,6 @@
 // Opens built pages in a headless Chromium: node bindings/npm/test-bundlers.mjs RESULT FOLDER...
 //
-// `globalThis.result` of each page has to contain RESULT twice: from the page and from its worker.
+// `globalThis.result` of each page has to contain RESULT from the page and from its worker.
 import assert from "node:assert/strict";
 import { basename, resolve } from "node:path";
 import { pathToFileURL } from "node:url";

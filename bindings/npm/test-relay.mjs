@@ -1,9 +1,8 @@
 // A match through the relay: node bindings/npm/test-relay.mjs RELAY PUSH LOCKSTEP2D
 //
-// The arguments are the paths of `lockstep2d-relay`, of the example `push` of that crate, and of the command
-// `lockstep2d`. Two peers in Node and a native one play 3000 ticks. One of the peers in Node is paused for five
-// seconds; the other is closed and started again with its key. All three end with the same hash. The two peers that
-// play from the first tick write the same replay, and the command verifies it.
+// The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
+// Node and a native one play 3000 ticks. One is paused for five seconds, one is restarted with its key. All three end
+// with the same hash. The peers that play from the first tick write equal replays, which verify.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -38,7 +37,7 @@ function start(program, ...args) {
 const flags = typeof WebSocket === "undefined" ? ["--experimental-websocket", "--no-warnings"] : [];
 const peer = (...args) => start(process.execPath, ...flags, PEER, ...args);
 
-/** Hash of a sandbox, from the hash of its world. The sandbox also hashes the number of refused commands, here 0. */
+/** A sandbox also hashes the number of refused commands, here 0. */
 function sandboxHash(world) {
     const bytes = (digits) => Buffer.from(digits, "hex").reverse();
     return L.hashBytes(Buffer.concat([bytes(world), bytes(L.hashBytes(new Uint8Array(8)))]));
@@ -50,10 +49,10 @@ async function play() {
     const { address } = JSON.parse(relay.lines[0]);
     const file = (name) => join(folder, `${name}.replay`);
     const native = start(pushProgram, address, CODE, "--ticks", String(TICKS), "-o", file("native"));
-    // The native peer opens the match: it has to be the first in the room.
+    // The first in the room opens the match.
     await native.first();
     const paused = peer(address, CODE, "1", "--pause-at", "700", "-o", file("paused"));
-    // The match begins with two peers. Only peers that play from the first tick write a replay.
+    // Peers that play from the first tick write a replay.
     await paused.first();
     await peer(address, CODE, "2", "--quit-at", "1500").ended;
     const again = peer(address, CODE, "2");

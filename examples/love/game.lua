@@ -6,11 +6,11 @@ local Game = {}
 Game.__index = Game
 
 Game.SEATS = 2
---- Data that all peers have to agree on: the rules, and the arithmetic of the engine.
+--- All peers have to agree on the rules and on the arithmetic of the engine.
 Game.OFFER = "push the crates 1, semantics " .. ls.semantics()
 Game.LEFT, Game.RIGHT, Game.JUMP = 1, 2, 4
 
--- The x coordinates in metres at which the players start, and to which they return after a fall.
+-- The x coordinates in metres at which the players start.
 local STARTS = { -5, 5 }
 
 local function shape(kind, x, y, radius)
@@ -47,7 +47,7 @@ function Game.new()
     return self
 end
 
---- Advances by a tick. Each input is one byte: left, right, jump.
+--- Each input is one byte: left, right, jump.
 function Game:step(inputs)
     for seat, player in ipairs(self.players) do
         local input = inputs:byte(seat)

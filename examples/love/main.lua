@@ -4,8 +4,8 @@
 ---     love examples/love --join 127.0.0.1:4000
 ---
 --- The keys are the arrows, or A, D and W; the space bar jumps, too. `--guess N` plays up to N ticks ahead of the
---- inputs of the other player (6 by default; 0 is lockstep). For tests: `--ticks N` on the host ends the match after N
---- ticks, `--random SEED` presses random keys, `--screenshot NAME` saves a picture at the end.
+--- inputs of the other player (6 by default; 0 is lockstep). For tests: `--ticks N` on the host, `--random SEED`
+--- presses random keys, `--screenshot NAME` saves a picture at the end.
 local ffi = require("ffi")
 local socket = require("socket")
 local ls = require("lockstep2d")
@@ -14,7 +14,7 @@ local Game = require("game")
 
 -- Pixels per metre.
 local SCALE = 40
--- Capacity of the buffer of poses, in bodies.
+-- Capacity in bodies.
 local ROWS = 64
 
 local game, driver, udp, options, final_hash

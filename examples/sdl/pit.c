@@ -80,7 +80,7 @@ static ls2d_shape_def triangle(void) {
     return shape;
 }
 
-/* The commands that build the pit. Its floor is body 0, the player's ball is body 3. */
+/* Body 0 is the floor, body 3 the player's ball. */
 static void build(ls2d_handle commands) {
     const ls2d_shape_def floor = rectangle(LS2D_FX(12), LS2D_FX_RATIO(1, 2));
     const ls2d_shape_def wall = rectangle(LS2D_FX_RATIO(1, 2), LS2D_FX(10));
@@ -100,7 +100,7 @@ static void build(ls2d_handle commands) {
     }
 }
 
-/* Adds the commands of a tick for the keys that are held and for a click at a pixel, if there is one. */
+/* Adds the commands of a tick for held keys and a click. */
 static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, const uint8_t *keys,
                  const SDL_Point *click) {
     const int x = keys[SDL_SCANCODE_RIGHT] - keys[SDL_SCANCODE_LEFT];
@@ -111,7 +111,7 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
         check(ls2d_apply_force(commands, player, LS2D_FX(25 * x), LS2D_FX(25 * y), info.position.x, info.position.y));
     }
     if (click != NULL) {
-        /* The position of the click is a fraction of two integers, so that the command is exact. */
+        /* The position is a fraction of integers, so that the command is exact. */
         const ls2d_fx at_x = LS2D_FX_RATIO(click->x - WIDTH / 2, PIXELS_PER_METRE);
         const ls2d_fx at_y = LS2D_FX_RATIO(HEIGHT - PIXELS_PER_METRE - click->y, PIXELS_PER_METRE);
         ls2d_explosion explosion;
@@ -122,9 +122,9 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
     }
 }
 
-/* ---- Drawing: floats are allowed, because nothing drawn enters the world ---- */
+/* ---- Drawing: nothing drawn enters the world ---- */
 
-/* Writes the corners of a shape in metres from its centre. Returns their number, or 0 for a shape without area. */
+/* Writes the corners of a shape in metres from its centre. Returns their number; 0 for a shape without area. */
 static int outline(const ls2d_shape_def *shape, SDL_FPoint *corners) {
     const double pi = 3.14159265358979, radius = (double)shape->radius / METRE;
     int i, count = 0;
@@ -287,7 +287,7 @@ int main(int argc, char **argv) {
             }
         }
         if (ticks_max == UINT64_MAX) {
-            /* 60 ticks a second. If more than six are due, as after a pause of the process, all of them are skipped. */
+            /* 60 ticks a second. If more than six are due, as after a pause, they are skipped. */
             const uint64_t due = SDL_GetTicks64() * 60 / 1000 - skipped;
             if (due > ticks + 6) {
                 skipped += due - ticks;

@@ -1,5 +1,4 @@
-//! The game of the examples `custom_game`, `lockstep_match`, `rollback_match` and `spectator`: two players push one
-//! ball. Its claim is the x coordinate of the ball, rounded down to metres.
+//! The game of several examples: two players push one ball. Its claim is the x coordinate of the ball, in whole metres.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -8,7 +7,6 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 
-/// A ball that two players push.
 pub(crate) struct Tug {
     world: World,
     ball: BodyId,
@@ -22,7 +20,6 @@ impl Tug {
         Ok(Tug { world, ball })
     }
 
-    /// Position of the ball.
     pub(crate) fn position(&self) -> Vec2<Fx> {
         self.world.body(self.ball).map_or(Vec2::ZERO, |body| body.position())
     }
@@ -30,7 +27,7 @@ impl Tug {
 
 impl Game for Tug {
     type Setup = ();
-    /// Force with which a player pushes to the right, in N.
+    /// Force to the right in N.
     type Input = i8;
     type Save = Snapshot;
 
@@ -50,12 +47,12 @@ impl Game for Tug {
 
     fn step(&mut self, inputs: &[i8]) {
         let force = inputs.iter().map(|&push| Fx::from(push)).sum();
-        // The ball always exists, so the command cannot fail.
+        // The ball always exists.
         let _ = self.world.apply_force(self.ball, Vec2::new(force, fx!(0)), self.position());
         self.world.step();
     }
 
-    /// The handle `ball` never changes, so the world is the complete state.
+    /// The handle `ball` never changes.
     fn state_hash(&self) -> StateHash {
         self.world.state_hash()
     }

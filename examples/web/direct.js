@@ -1,12 +1,11 @@
-// WebRTC data channels between the members of a room. The relay carries the WebRTC signals. It also carries the packets
-// between members without an open channel.
+// WebRTC data channels between the members of a room. The relay carries the signals, and packets between members
+// without an open channel.
 //
-// A channel is unordered and does not resend lost packets, like UDP. Packets of both routes have the addresses that the
-// relay assigns, so a match does not depend on the route. A signal is JSON after a prefix with which no packet of a
-// match begins. The relay interprets neither signals nor packets.
+// A channel is unordered and does not resend lost packets. Both routes use the addresses of the relay. A signal is JSON
+// after a prefix with which no packet of a match begins.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
-// Between networks, a STUN server is needed: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
+// A STUN server between networks: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
 const CONFIG = {};
 const CHANNEL = { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 };
 
@@ -55,8 +54,7 @@ export class Direct {
         this.#links.clear();
     }
 
-    // The member whose address comes first, as text, makes the offer. The other member requests the connection with a
-    // `wish`.
+    // The member whose address comes first, as text, makes the offer. The other one requests it with a `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
@@ -90,7 +88,7 @@ export class Direct {
     }
 
     async #call(address) {
-        // `setLocalDescription` creates an offer, or an answer if an offer was received.
+        // `setLocalDescription` creates an answer if an offer was received.
         const { connection } = this.#link(address);
         await connection.setLocalDescription();
         this.#signal(address, { description: connection.localDescription });

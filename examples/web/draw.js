@@ -18,7 +18,7 @@ function body(context, game, [id, x, y, angle]) {
     context.restore();
 }
 
-/** Draws a game. `scale` is the number of pixels per metre. */
+/** `scale` is in pixels per metre. */
 export function draw(canvas, game, scale) {
     const context = canvas.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);

@@ -1,11 +1,10 @@
 // The rules: players push crates. The whole state is the world. `crates/relay/examples/push.rs` has the same rules in
-// Rust, so that pages and native programs play together.
+// Rust.
 import { World, box, circle, decodeNativeState, encodeNativeState, nativeOffer } from "lockstep2d";
 
 export const RULES = "push the crates";
 export const SEATS = 4;
 
-/** Data that all peers have to agree on. */
 export const offer = () => nativeOffer({ rules: RULES, seats: SEATS });
 
 /** Adds the level to a world or to a list of commands. */
@@ -26,7 +25,7 @@ export class Game {
         this.players = [...this.world.bodies()].slice(1, 1 + SEATS);
     }
 
-    // Applies the inputs of a tick to the world or to a list of commands. Bits of an input: left, right, up.
+    // The edits of a tick. Bits of an input: left, right, up.
     apply(inputs, edits) {
         this.players.forEach((player, seat) => {
             const input = inputs[seat];

@@ -4,7 +4,7 @@ import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
 import { MatchRecording } from "./recording.js";
 
-/** Identity of this window in a room, kept in the session storage: a page that is reloaded gets its seat back. */
+/** Identity in a room, kept in the session storage: a page that is reloaded gets its seat back. */
 function identity(code) {
     const name = `lockstep2d ${code.toUpperCase()}`;
     const stored = sessionStorage.getItem(name);
@@ -17,8 +17,7 @@ export class Player {
     desyncs = 0;
     #input;
 
-    /** Enters a room. Opens a match if the room is empty, otherwise joins the match of the room. `input` returns the
-     * bits of the pad. */
+    /** Opens a match if the room is empty, otherwise joins. `input` returns the bits of the pad. */
     static async enter(url, code, input) {
         const { secret, key } = identity(code);
         const relay = await Relay.connect(url, code, { secret });
@@ -33,7 +32,7 @@ export class Player {
         this.direct = new Direct(relay);
         this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
         this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
-        // Browsers slow down the timers of a page in the background, so received packets update the match as well.
+        // Browsers slow down timers in the background.
         this.direct.onPacket = (from, packet) => {
             this.driver.receive(performance.now(), from, packet);
             this.update();

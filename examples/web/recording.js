@@ -1,5 +1,5 @@
-// Records the final inputs of a match as commands of a world: a replay that needs no rules. `lockstep2d verify` and the
-// viewer open it.
+// Records the final inputs of a match as commands of a world: a replay that needs no rules, for `lockstep2d verify` and
+// the viewer.
 import { Commands, Recording } from "lockstep2d";
 import { Game, setUp } from "./game.js";
 
@@ -10,7 +10,7 @@ export class MatchRecording {
     #parts = [];
     /** Number of recorded ticks. */
     ticks = 0;
-    /** Whether ticks are missing, for example the first ones because this peer has joined late. */
+    /** Whether ticks are missing, for example because this peer has joined late. */
     broken = false;
 
     constructor() {
@@ -19,7 +19,7 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the final ticks of a match. Call it every few seconds: the match keeps their inputs only for minutes. */
+    /** Call it every few seconds: the match keeps inputs only for minutes. */
     follow(match) {
         if (this.broken || match.status === "connecting") {
             return;
@@ -41,7 +41,6 @@ export class MatchRecording {
         }
     }
 
-    /** Ends the replay and returns its bytes. */
     finish() {
         const parts = [...this.#parts, this.#recording.finish()];
         const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));

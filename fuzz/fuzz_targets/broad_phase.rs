@@ -1,4 +1,4 @@
-//! Crowds in worlds with different broad phases. See `broad_phases`.
+//! Worlds with different broad phases. See `broad_phases`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Arbitrary scenes and commands, run in two worlds that must have equal states and events. See `lockstep`.
+//! Scenes and commands in two worlds that must not differ. See `lockstep`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Hulls of points, compared with a slow implementation of the definition. See `hulls`.
+//! Hulls of points. See `hulls`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Contacts of two shapes, compared with a search over all axes in big integers. See `manifolds`.
+//! Contacts of two shapes. See `manifolds`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

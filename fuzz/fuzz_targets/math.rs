@@ -1,4 +1,4 @@
-//! Operations of the maths module, compared with exact fractions. See `maths`.
+//! Operations of the maths module. See `maths`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

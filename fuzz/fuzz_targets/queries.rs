@@ -1,4 +1,4 @@
-//! Queries of changing worlds, compared with brute force and with distances. See `questions`.
+//! Queries of changing worlds. See `questions`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,4 @@
-//! Recorded, changed and forged replays: the verifier must return a verdict in bounded time and memory, and `Match`
-//! only for unchanged files. See `verdicts`.
+//! Recorded, changed and forged replays for the verifier. See `verdicts`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +7,7 @@ use lockstep2d_fuzz::{allocations, verdicts};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum bytes that the verifier and the recorder may allocate for a file within the limits.
+/// Maximum memory in bytes, for files within the limits.
 const MEMORY_MAX: usize = 256 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

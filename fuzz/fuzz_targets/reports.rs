@@ -1,5 +1,4 @@
-//! Reports as written, changed and forged: reading and comparing them must return an error or a result, in bounded
-//! time and memory. See `reports`.
+//! Reports as written, changed and forged, compared. See `reports`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +7,7 @@ use lockstep2d_fuzz::{allocations, reports};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum bytes that a comparison may allocate for two files within the limits.
+/// Maximum memory in bytes, for two files within the limits.
 const MEMORY_MAX: usize = 256 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,4 +1,4 @@
-//! Sends changed packets to sessions that play, and to one that joins. See `bytes::session`.
+//! Changed packets for sessions. See `bytes::session`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Forged snapshots: reading must return an error or a world that can be stepped. See `snapshots`.
+//! Forged snapshots for the decoder of worlds. See `snapshots`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,9 +1,9 @@
-//! Measures memory use: an allocator that counts bytes and forwards to the system's allocator.
+//! An allocator that counts bytes.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The system's allocator, which also counts the bytes in use.
+/// The system's allocator, with a count of the bytes in use.
 pub struct Counting;
 
 static IN_USE: AtomicUsize = AtomicUsize::new(0);
@@ -32,7 +32,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// Runs `work` and returns its result and the maximum number of bytes in use at one time, beyond those in use before.
+/// Runs `work` and returns its result and the peak of the bytes in use, beyond those in use before.
 pub fn peak_of<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = IN_USE.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);

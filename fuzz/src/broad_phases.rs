@@ -1,6 +1,5 @@
-//! Compares broad phases: worlds that differ only in their broad phase must have equal states, events and numbers of
-//! pairs. The worlds contain crowds of bodies that are spawned, despawned, teleported and resized, so that trees are
-//! rebuilt and lists are sorted again.
+//! Worlds that differ in their broad phase must have equal states, events and numbers of pairs. Crowds of bodies are
+//! spawned, despawned, teleported and resized.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
@@ -12,11 +11,9 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// A run ends when its cost exceeds this: the sum over the ticks of [`generator::cost`], plus the square of the number
-/// of shapes divided by 64.
+/// Maximum cost of a run: the sum of [`generator::cost`] and the square of the number of shapes divided by 64.
 const COST_MAX: u64 = 120_000;
-/// The crowd gets no more bodies while the world has this many shapes, because brute force compares every shape with
-/// every other.
+/// Number of shapes at which no bodies are added, because brute force compares all pairs.
 const SHAPES_MAX: usize = 600;
 
 /// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.
@@ -48,7 +45,6 @@ pub fn run(bytes: &[u8]) -> u64 {
                 assert_eq!(world.execute(command), outcome, "{command:?}");
             }
         }
-        // The last world switches between broad phases.
         if source.one_in(4) {
             let kinds = [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
             worlds[3].set_broad_phase(source.pick(&kinds));
@@ -71,7 +67,6 @@ pub fn run(bytes: &[u8]) -> u64 {
     pairs
 }
 
-/// A crowd of many bodies from few bytes of input.
 struct Crowd {
     rng: Rng,
     /// Half the width of the area in which bodies are placed.
@@ -134,7 +129,6 @@ impl Crowd {
         commands
     }
 
-    /// Adds a command for one in `one_of` bodies, chosen at random.
     fn each(
         &mut self,
         world: &World,

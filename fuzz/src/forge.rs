@@ -1,5 +1,4 @@
-//! A replay forger: takes a replay apart according to `docs/FORMAT.md`, changes it and puts it together again with all
-//! checksums and the chain hash repaired.
+//! Takes a replay apart according to `docs/FORMAT.md`, changes it, and repairs all checksums.
 
 use lockstep2d::hash::StateHash;
 
@@ -37,7 +36,7 @@ impl Forged {
     }
 }
 
-/// Corrects the checksums and the chain hash of any bytes with the structure of a replay.
+/// Corrects the checksums and the chain hash of bytes with the structure of a replay.
 pub fn repair(file: &mut Vec<u8>) {
     let length = |file: &[u8], at: usize| {
         let bytes = file.get(at..at + 4)?.first_chunk()?;

@@ -1,7 +1,7 @@
 //! Generates scenes: settings, and commands for the current state of a world.
 //!
-//! Three of four scenes are ordinary ones ([`crate::ordinary`]). This module generates the other scenes, in which all
-//! values may be at or beyond their limits. Most bodies are small and close together, so that most of them touch.
+//! Three of four scenes are ordinary ones ([`crate::ordinary`]). In the others, values may be at or beyond their
+//! limits. Most bodies are small and close together, so that they touch.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
@@ -12,18 +12,18 @@ use lockstep2d::{codec, fx};
 use crate::source::Source;
 use crate::{joints, ordinary, settings, shapes};
 
-/// Generates commands, and keeps the handles that it has used, which may become stale.
+/// Generates commands, and remembers handles, which may become stale.
 pub struct Generator {
     /// Centre of the scene.
     middle: Vec2<Fx>,
-    /// Whether most ticks have no commands, so that many bodies fall asleep.
+    /// Whether most ticks have no commands, so that bodies fall asleep.
     lulls: bool,
     bodies: Vec<BodyId>,
     shapes: Vec<ShapeId>,
     joints: Vec<JointId>,
 }
 
-/// Decides whether the scene is an ordinary one, and returns its settings, which are mostly valid.
+/// Decides whether the scene is ordinary, and returns its settings, which are mostly valid.
 pub fn config(source: &mut Source<'_>) -> Config {
     let ordinary = !source.one_in(4);
     source.set_ordinary(ordinary);
@@ -83,7 +83,7 @@ fn wild_config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// New settings for a world, mostly with the limits of its present settings.
+/// New settings for a world, mostly with its present limits.
 fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
     let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
     let config = wild_config(source);
@@ -98,7 +98,7 @@ impl Generator {
     /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
         let edge = WORLD_EXTENT_MAX - fx!(3);
-        // Bodies are clamped at the edge of the world, which counts as a fault.
+        // At the edge of the world bodies are clamped, which counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_ordinary() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
@@ -106,8 +106,7 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// The commands of the first tick. In a scene that is not ordinary, these are mostly a floor and a heap of bodies,
-    /// often with an ordinary pile.
+    /// The commands of the first tick. Unless the scene is ordinary, mostly a floor and a heap.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_ordinary() {
@@ -166,7 +165,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // Mostly a target that a kinematic body can reach within a tick.
+                // Mostly within reach of a kinematic body in one tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -198,7 +197,6 @@ impl Generator {
         });
     }
 
-    /// A command that applies a force, torque or impulse, or sets a velocity or pose.
     fn push(&self, source: &mut Source<'_>, body: BodyId) -> Command {
         let place = |source: &mut Source<'_>| {
             if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { self.near(source, 3000) }
@@ -238,7 +236,7 @@ impl Generator {
         self.middle + Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
     }
 
-    /// Adds 1 to 80 equal bodies, for few bytes of input: at one point, or scattered around it.
+    /// Adds 1 to 80 equal bodies at one point or around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
         let count = source.pick(&[12, 5, 20, 14, 3, 16, 8, 12, 1, 12, 18, 16, 10, 14, 40, 80]);
         let asleep = source.one_in(6);
@@ -315,7 +313,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A change of a joint. A change that names other bodies, which is rare, is refused by the world.
+    /// A change of a joint. The world refuses a change of bodies.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);
@@ -335,7 +333,7 @@ impl Generator {
         Command::SetJoint { joint, def }
     }
 
-    /// A body: mostly an existing one, sometimes a handle that was used before, which may be stale or was never valid.
+    /// Mostly an existing body, sometimes a handle that may be stale or was never valid.
     fn body(&mut self, source: &mut Source<'_>, world: &World) -> BodyId {
         let present: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.bodies)
@@ -390,7 +388,7 @@ pub(crate) mod serde_handle {
     of_bytes!(BodyId, ShapeId, JointId);
 }
 
-/// Approximate cost of a tick of a world, used to keep a fuzzed scene from running for minutes.
+/// Approximate cost of a tick, used to bound a run.
 #[must_use]
 pub fn cost(world: &World) -> u64 {
     let solver = world.config().solver;

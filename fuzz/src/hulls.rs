@@ -1,5 +1,4 @@
-//! Compares hulls with a slow implementation of the definition: an edge is a pair of points with all others to its
-//! left, or on it.
+//! Compares hulls with their definition: an edge is a pair of points with all others to its left, or on it.
 
 use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
 use lockstep2d::math::{Fx, Length, Rng, Vec2};
@@ -16,8 +15,7 @@ type Point = Vec2<Length>;
 /// Makes the hull of some points. Returns whether there is one.
 ///
 /// # Panics
-/// When the result is not the hull, when the order or repetition of the points matters, or when a valid hull is
-/// refused.
+/// When the hull is wrong, depends on order or repetition of points, or a valid one is refused.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     let points = points(&mut source);
@@ -26,7 +24,7 @@ pub fn run(bytes: &[u8]) -> bool {
     let mut others = points.clone();
     Rng::new(source.word()).shuffle(&mut others);
     others.extend_from_slice(&points[..source.below(points.len() + 1)]);
-    // Only hulls are compared: which of several errors is reported first may depend on the order.
+    // If there are several errors, the order decides which one is reported.
     assert_eq!(
         found.as_ref().ok(),
         Polygon::hull(&others).as_ref().ok(),
@@ -62,16 +60,14 @@ fn points(source: &mut Source<'_>) -> Vec<Vec2<Fx>> {
     let way = source.below(4);
     (0..source.below(20))
         .map(|_| match way {
-            // A grid of few lines, so that many points lie on an edge.
+            // A grid with few lines.
             0 => Vec2::new(Fx::from(source.below(4) as i32), Fx::from(source.below(4) as i32)),
             1 => source.mostly_vec(-reach, reach),
             2 => {
-                // Points on a circle.
                 let turned = lockstep2d::math::Rot::from_angle(source.angle());
                 turned.apply_wide(Vec2::new(lockstep2d::math::ratio(reach, 1000), Fx::ZERO))
             }
             _ => {
-                // Points next to a line.
                 let along = source.thousandths(-reach, reach);
                 Vec2::new(along, along + Fx::from_bits(i64::from(source.byte()) << 8))
             }
@@ -84,7 +80,7 @@ fn cross(a: Point, b: Point, c: Point) -> BigInt {
     difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x)
 }
 
-/// The edges of the hull: all points are to the left of each edge, or on it.
+/// The edges by the definition.
 fn slow_hull(points: &[Point]) -> Vec<(Point, Point)> {
     let mut edges = Vec::new();
     for &a in points {
@@ -106,14 +102,14 @@ fn is_between(c: Point, a: Point, b: Point) -> bool {
     (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
 }
 
-/// Whether an edge is more than one unit longer than the minimum, so that its rounded length is at least the minimum.
+/// Whether an edge is more than one unit longer than the minimum. Its rounded length is then legal.
 fn length_is_legal(a: Point, b: Point) -> bool {
     let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
     let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
     square > BigInt::from(EDGE_MIN + 1).pow(2)
 }
 
-/// Checks that a normal is perpendicular to its edge within the rounding of a unit vector, and points to the right.
+/// Checks that a normal is perpendicular to its edge within rounding, and points to the right.
 fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
     let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
     let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());

@@ -1,4 +1,4 @@
-//! Generates joints of every kind: mostly with moderate limits, drives and springs, sometimes beyond what is allowed.
+//! Generates joints of every kind, mostly moderate, sometimes beyond what is allowed.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -29,8 +29,7 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     finish(source, def)
 }
 
-/// Sets the properties that all kinds share: threshold, user data, softness, whether the joint is enabled, and whether
-/// its bodies collide.
+/// Sets properties that all kinds share.
 pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def.collide_connected = source.one_in(2);
     if source.one_in(4) {
@@ -87,7 +86,6 @@ fn limit(source: &mut Source<'_>) -> Option<JointLimit> {
     })
 }
 
-/// A maximum force or torque.
 fn most(source: &mut Source<'_>) -> Fx {
     match source.below(4) {
         0 => Fx::MAX,
@@ -152,7 +150,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
     joint
 }
 
-/// A joint kind for neighbouring bodies with anchors at the same point, with mostly moderate parameters.
+/// A joint kind for neighbours with anchors at one point, with mostly moderate parameters.
 pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);

@@ -1,5 +1,4 @@
-//! Code shared by the fuzz targets: a generator of scenes and commands, the checks of worlds, a forger of replays and a
-//! counting allocator. `README.md` explains how to run them.
+//! Code shared by the fuzz targets. `README.md` explains how to run them.
 
 pub mod allocations;
 pub mod broad_phases;

@@ -1,6 +1,5 @@
-//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The second world has
-//! another broad phase, is reloaded from bytes or has its caches cleared, or combines another broad phase with one of
-//! the latter two.
+//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The other has
+//! another broad phase, is reloaded from bytes, or has its caches cleared.
 
 use std::sync::Mutex;
 
@@ -11,12 +10,11 @@ use lockstep2d::world::{BodyField, Command, Events, Snapshot, World};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// A run ends when the sum of [`generator::cost`] over its ticks exceeds this.
+/// Maximum of [`generator::cost`], summed over the ticks.
 const COST_MAX: u64 = 60_000;
 /// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
-/// Interval in ticks of the invariant checks, in addition to those after commands and at the end. In a small world the
-/// checks take most of the time.
+/// Interval in ticks of the invariant checks, which take most of the time of a small world.
 const CHECK_INTERVAL: u64 = 8;
 
 /// Statistics of a run.
@@ -40,7 +38,7 @@ pub struct Seen {
     pub noticed: u64,
     /// Hit events, and events of joints above their threshold.
     pub hits: u64,
-    /// Whether the scene is an ordinary one, which should have no faults.
+    /// Whether the scene is ordinary and should have no faults.
     pub ordinary: bool,
 }
 
@@ -59,7 +57,6 @@ enum Disturbance {
     ClearedScratch,
 }
 
-/// The variants of the second world.
 const VARIANTS: [Variant; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};
@@ -78,7 +75,6 @@ const VARIANTS: [Variant; 8] = {
     ]
 };
 
-/// The two worlds that must stay equal.
 struct Variants {
     plain: World,
     variant: Variant,
@@ -88,17 +84,15 @@ struct Variants {
 /// Runs the scene that the bytes describe.
 ///
 /// # Panics
-/// When the variants differ, an invariant is broken, or a refused command has changed the world.
+/// When the worlds differ, an invariant is broken, or a refused command has changed the world.
 pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// Runs the scene like [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body
-/// of the second world flips.
+/// Runs the scene like [`run`], and flips a bit of a body of the second world in a crowd.
 ///
 /// # Panics
-/// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which
-/// accepts the flip.
+/// When more than 12 contacts touch and the eighth body accepts the flip.
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
@@ -161,7 +155,6 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
 }
 
 impl Seen {
-    /// Adds the statistics of a tick.
     fn see(&mut self, world: &World) {
         let touching = world.contacts().filter(|contact| contact.touching).count() as u64;
         let events = world.events();
@@ -173,7 +166,7 @@ impl Seen {
         self.hits += (events.hits.len() + events.joints.len()) as u64;
     }
 
-    /// Whether this is a run of 60 ticks or more with at least ten touching contacts at one time.
+    /// Whether the run has 60 ticks or more and ten touching contacts at one time.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.ticks >= 60 && self.most_touching >= 10
@@ -187,7 +180,6 @@ impl Variant {
         world
     }
 
-    /// Applies the disturbance of the variant, which must not change the result.
     fn perturb(self, source: &mut Source<'_>, world: &mut World) {
         match self.disturbance {
             Disturbance::ThroughBytes if source.below(4) == 0 => {
@@ -209,7 +201,7 @@ impl Variants {
                 Ok(_) => seen.done += 1,
                 Err(error) => {
                     seen.refused += 1;
-                    // The second world has not executed the command yet.
+                    // The second world has not executed the command.
                     let changed = plain.digest().differing(&other.digest());
                     assert!(
                         changed.is_empty(),
@@ -239,14 +231,13 @@ impl Variants {
     }
 }
 
-/// A state, and the ticks that followed it.
 struct Rollback {
     save: Snapshot,
     ticks: Vec<(Vec<Command>, StateHash, Events)>,
 }
 
 impl Rollback {
-    /// Restores the state in the world of a later tick, with that world's caches, and plays the same ticks again.
+    /// Restores the state, with the caches of a later tick, and plays the ticks again.
     fn repeat(self, world: &mut World) {
         world.restore(&self.save);
         for (commands, hash, events) in &self.ticks {
@@ -260,7 +251,6 @@ impl Rollback {
     }
 }
 
-/// Checks the invariants of a world.
 fn check(world: &World, after: &dyn std::fmt::Debug) {
     if let Err(violation) = world.validate() {
         panic!("{violation}, after {after:?}");
@@ -281,7 +271,6 @@ fn check(world: &World, after: &dyn std::fmt::Debug) {
 static TOTAL: Mutex<Total> =
     Mutex::new(Total { runs: 0, long: 0, full: 0, touching: 0, ticks: 0, ordinary: 0, faulty: [0; 2] });
 
-/// Sums over the runs of a process.
 struct Total {
     runs: u64,
     /// Runs of 60 ticks or more.
@@ -291,11 +280,11 @@ struct Total {
     touching: u64,
     ticks: u64,
     ordinary: u64,
-    /// Numbers of runs with faults: first of wild scenes, then of ordinary scenes.
+    /// Runs with faults, of wild and of ordinary scenes.
     faulty: [u64; 2],
 }
 
-/// Adds a run to the statistics, which are printed after every 100 runs if `FUZZ_FIGURES` is set.
+/// Adds a run to the statistics, printed every 100 runs with `FUZZ_FIGURES`.
 pub fn count(seen: Seen) {
     let Ok(mut total) = TOTAL.lock() else { return };
     total.runs += 1;

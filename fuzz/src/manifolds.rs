@@ -1,4 +1,4 @@
-//! Compares contacts and distances of two shapes with a search over all axes and all pairs of features in big integers.
+//! Compares contacts and distances with a search over all axes and pairs of features in big integers.
 
 use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Rot, Step, Vec2};
@@ -12,15 +12,13 @@ use crate::source::Source;
 /// A point in units of 2^-32 m.
 type Point = [BigInt; 2];
 
-/// Maximum error of a manifold's separation in micrometres. The face of shape B is only chosen if its separation is
-/// better by half a millimetre, and outlines within another half a millimetre count as touching.
+/// Maximum error of a separation in micrometres. A face of B must be better by half a millimetre to be chosen, and
+/// outlines within another half a millimetre count as touching.
 const CONTACT_ERROR: i64 = 1_001;
-/// Maximum error of a distance in micrometres: 20 nm, plus one unit of `Length` (240 nm) by which a rotated vertex is
-/// rounded, rounded up to whole micrometres.
+/// Maximum error of a distance in micrometres: 20 nm, and 240 nm of rounding of a rotated vertex.
 const DISTANCE_ERROR: i64 = 1;
 
-/// A shape in world coordinates: all points within `radius` of the convex hull of `points`, which are
-/// counter-clockwise.
+/// All points within `radius` of the convex hull of `points`, which are counter-clockwise.
 struct Solid {
     points: Vec<Point>,
     radius: BigInt,
@@ -42,7 +40,7 @@ pub enum Seen {
 /// Puts two shapes into a world and checks their distance and contact.
 ///
 /// # Panics
-/// When the distance or the contact differs from the exact value by more than the documented error.
+/// When one of them differs from the exact value by more than the documented error.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -61,7 +59,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let at_b = at_a + between;
     let (angle_a, angle_b) = (source.angle(), source.angle());
     let a = BodyDef::fixed().position(at_a).angle(angle_a);
-    // The mass is given, because segments have none, and a body without mass has no contacts with fixed bodies.
+    // Segments have no mass, and a body without mass has no contacts with fixed bodies.
     let mass = MassSource::Given { mass: Fx::ONE, centre: Vec2::ZERO, gyration: Fx::ONE };
     let b = BodyDef::dynamic().position(at_b).angle(angle_b).mass(mass);
     let shapes = [(a, def_a), (b, def_b)].map(|(body, geometry)| {
@@ -78,7 +76,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let found = integer(distance.distance.to_bits()) + &radii;
     assert!(is_within(&exact, &found, DISTANCE_ERROR), "distance {}: {}", distance.distance, what());
 
-    // There are no contacts between two segments.
+    // Two segments have no contacts.
     let is_segment = |geometry: &Geometry| matches!(geometry, Geometry::Segment { .. });
     if is_segment(&def_a) && is_segment(&def_b) {
         return Seen::Apart;
@@ -105,7 +103,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     for point in manifold.points().iter().filter(|_| !saturated) {
         let place = manifold.origin + point.anchor.widen();
         let place = [BigInt::from(place.x.to_bits()), BigInt::from(place.y.to_bits())];
-        // Contact points are half-way between the surfaces, at half the separation from each.
+        // Half the separation from each surface.
         let half = BigInt::from(Fx::from(point.separation).to_bits().abs() / 2);
         for solid in [&solid_a, &solid_b] {
             let allowed = integer(&solid.radius + &half) + micrometres(CONTACT_ERROR);
@@ -124,7 +122,7 @@ fn micrometres(count: i64) -> Exact {
     Exact::new(BigInt::from(count) << 32, BigInt::from(1_000_000))
 }
 
-/// Any geometry except a link, up to some decimetres times `scale`.
+/// A geometry other than a link, up to some decimetres times `scale`.
 fn geometry(source: &mut Source<'_>, scale: i64) -> Option<Geometry> {
     let size = |source: &mut Source<'_>| source.thousandths(2, 500 * scale);
     let point = |source: &mut Source<'_>| {
@@ -174,7 +172,7 @@ impl Solid {
         Solid { points, radius: radius.to_bits().into() }
     }
 
-    /// The edges. Two points make two edges, one in each direction; a single point makes none.
+    /// The edges: two for two points, none for one.
     fn edges(&self) -> impl Iterator<Item = (&Point, &Point)> {
         let count = self.points.len();
         (0..count)
@@ -220,12 +218,12 @@ fn square_from_edge(a: &Point, b: &Point, point: &Point) -> Exact {
     }
 }
 
-/// `x |x|`, which is monotonic in `x`.
+/// `x |x|`, monotonic in `x`.
 fn signed_square(x: &Exact) -> Exact {
     x * x.abs()
 }
 
-/// Distance of the hulls of the points, or the negative penetration depth, as a signed square.
+/// Signed square of the distance of the hulls, or of the negative penetration depth.
 fn separation(a: &Solid, b: &Solid) -> Exact {
     let of_axes = |a: &Solid, b: &Solid| {
         let face = |(start, end): (&Point, &Point)| {
@@ -240,14 +238,14 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
         [(a, b), (b, a)].into_iter().flat_map(|(a, b)| a.points.iter().map(|point| b.square_distance(point)));
     let apart = apart.min().unwrap_or_else(Exact::zero);
     match deepest {
-        // For crossing segments `apart` is positive, because it is the distance of end points. For collinear segments
-        // `deepest` is zero even if they are apart.
+        // Crossing segments have a positive `apart`, the distance of end points. Collinear segments that are apart have
+        // a `deepest` of zero.
         Some(deepest) if !deepest.is_positive() && (deepest.is_negative() || apart.is_zero()) => deepest,
         _ => apart,
     }
 }
 
-/// Whether `exact` is the signed square of a length that differs from `found` by at most `error` micrometres.
+/// Whether `exact` is the signed square of a length within `error` micrometres of `found`.
 fn is_within(exact: &Exact, found: &Exact, error: i64) -> bool {
     let error = micrometres(error);
     (signed_square(&(found - &error))..=signed_square(&(found + &error))).contains(exact)

@@ -1,5 +1,4 @@
-//! Peers play a match, and an attacker reads all their packets. The attacker sends noise, and truncated, repeated or
-//! changed packets of the match, with the checksum as it is or repaired, from any address.
+//! Peers play a match. An attacker reads all packets and sends noise, and truncated, repeated or changed packets.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -30,7 +29,6 @@ const PACKETS: usize = 64;
 /// The last packets that were sent: number of the sender, and bytes.
 type Heard = Rc<RefCell<VecDeque<(u32, Vec<u8>)>>>;
 
-/// A port whose outgoing packets are recorded.
 struct Tapped {
     port: Port,
     number: u32,
@@ -55,23 +53,22 @@ impl Transport for Tapped {
 /// Statistics of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Last tick that both host and player have confirmed; 0 if one of them has stopped.
+    /// Last tick confirmed by host and player; 0 if one of them has stopped.
     pub ticks: u64,
     /// Number of packets that the attacker sent.
     pub packets: u64,
-    /// Whether a peer has stopped, which forged packets can cause.
+    /// Whether a peer has stopped. Forged packets can cause that.
     pub stopped: bool,
-    /// Whether a peer has detected a desync, which forged packets can cause, too.
+    /// Whether a peer has detected a desync. Forged packets can cause that.
     pub diverged: bool,
-    /// Whether a third peer has joined the running match, or has watched it.
+    /// Whether a third peer has joined or watched.
     pub late: bool,
 }
 
-/// A match and its attacker.
 struct Match {
     network: Network,
     heard: Heard,
-    /// Peers by number; `None` for a peer that has stopped or not yet started.
+    /// `None` for a peer that has stopped or not yet started.
     peers: [Option<Peer<Memory, Tapped>>; 3],
     /// Whether the attacker can make correct checksums.
     forges: bool,
@@ -81,8 +78,7 @@ struct Match {
 /// Plays a match of a hundred ticks, disturbed as the bytes describe.
 ///
 /// # Panics
-/// When a peer panics, when its report or replay is invalid, or when packets without a correct checksum make the peers
-/// stop or differ.
+/// When a peer's report or replay is invalid, or packets without a correct checksum make peers stop or differ.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let options = source.pick(&[PeerOptions::lockstep(), PeerOptions::rollback()]);
@@ -148,7 +144,7 @@ impl Match {
         }
     }
 
-    /// Calls `act` for each peer; a peer that returns an error is removed.
+    /// Calls `act` for each peer. A peer that returns an error is removed.
     fn each(&mut self, mut act: impl FnMut(&mut Peer<Memory, Tapped>) -> Result<(), PeerError>) {
         for peer in &mut self.peers {
             if let Some(Err(error)) = peer.as_mut().map(&mut act) {
@@ -158,7 +154,6 @@ impl Match {
         }
     }
 
-    /// Sends a packet of the attacker to a peer.
     fn perturb(&mut self, source: &mut Source<'_>) {
         let to = source.pick(&[0, 1, 2]);
         let from = source.pick(&[0, 1, 2, STRANGER]);
@@ -176,7 +171,7 @@ impl Match {
                 changed
             }
         };
-        // An attacker that does not forge repeats an unchanged packet only from the address of its sender.
+        // Without forging, an unchanged packet is repeated only from its sender.
         let from = if !self.forges && packet == heard { sender } else { from };
         if self.forges {
             repair(0, &mut packet);

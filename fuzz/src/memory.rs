@@ -3,7 +3,7 @@
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 
-/// The game. Its state combines all inputs so far into one number.
+/// The game. Its state is one number.
 #[derive(Clone, Debug)]
 pub struct Memory {
     sum: u64,

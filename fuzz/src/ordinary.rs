@@ -1,6 +1,5 @@
-//! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, with many contacts and no
-//! values that should reach a clamp. About one scene in five hundred reaches a clamp nevertheless, for example when a
-//! chain is spawned across a pile, so that its joints and contacts contradict each other.
+//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. About one in five hundred
+//! still reaches a clamp, for example when a chain is spawned across a pile.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -38,7 +37,6 @@ pub fn config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// Adds ground, a pile on it, and sometimes another pile or a chain.
 pub fn setup(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     ground(source, middle, commands);
     pile(source, middle, commands);
@@ -75,7 +73,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
             spawn(fixed, &[line((fx!(-8), slope), (fx!(0), fx!(0))), line((fx!(0), fx!(0)), (fx!(8), slope))])
         }
         _ => {
-            // A drum: four walls that rotate about a point three metres above the floor.
+            // A drum: four walls about a point three metres above the floor.
             let (lying, standing) = ((fx!(4), fx!(0.25)), (fx!(0.25), fx!(4)));
             let walls = [
                 rectangle(lying, fx!(0), fx!(-3.25)),
@@ -89,7 +87,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
     });
 }
 
-/// A floor with a conveyor surface, a one-way platform that lets bodies pass from below, and a sensor in the middle.
+/// A conveyor, a one-way platform that lets bodies pass from below, and a sensor.
 fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     let floor = rectangle((fx!(8), fx!(0.5)), fx!(0), fx!(-0.5));
     let platform = rectangle((fx!(1.5), fx!(0.1)), source.thousandths(-2000, 2000), fx!(1.5));
@@ -100,7 +98,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     ]
 }
 
-/// A sensor, half of the time with an area: a fluid with a current and a force.
+/// A sensor, half of the time with a fluid.
 fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     if source.one_in(2) {
         return shape.sensor();
@@ -114,7 +112,7 @@ fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     )
 }
 
-/// Adds equal bodies in rows, touching, slightly apart or slightly overlapping.
+/// Adds equal bodies in rows, some slightly apart or overlapping.
 pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = ordinary_shape(source);
     let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
@@ -130,8 +128,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // The half second that bodies need to fall asleep is a large part of a short scene, so most piles get a higher
-    // sleep speed.
+    // The half second until bodies sleep is long in a short scene: most piles get a higher sleep speed.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
@@ -147,7 +144,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     }
 }
 
-/// Adds bodies joined in a chain, the first of which is usually joined to a fixed body.
+/// Adds joined bodies, the first usually joined to a fixed body.
 fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let slot = |commands: &[Command]| {
         let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
@@ -238,7 +235,6 @@ pub fn command(
     });
 }
 
-/// A joint between a body and the next one, anchored at the point between them.
 fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<JointDef> {
     let (other, there) = world.bodies().find(|(id, _)| id.index() > body.index())?;
     let here = world.body(body)?;
@@ -246,12 +242,12 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
     let mut joint = JointDef::new(body, other, joints::ordinary_kind(source)).anchor_a(a).anchor_b(b);
-    // The rest angle is the current one, so that joints that hold the angle have nothing to correct.
+    // The current angle: joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))
 }
 
-/// Adds a command that changes a body, shape or joint, or that spawns a few bodies.
+/// Adds a command that changes a body, shape or joint, or spawns a few bodies.
 fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut Vec<Command>) {
     let here = world.body(body).map_or(Vec2::ZERO, |body| body.position());
     let some_shape = world.body(body).and_then(|body| body.shapes().first());

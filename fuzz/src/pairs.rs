@@ -1,4 +1,4 @@
-//! Two shapes at changing relative positions: their contact must not depend on caches, on SIMD or, except for ties, on
+//! Two shapes at changing relative positions. Their contact must not depend on caches, on SIMD or, except for ties, on
 //! the order of the shapes.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, ShapeId};
@@ -11,17 +11,14 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference between two separations, and between a separation and a distance, in metres. The face of the
-/// second shape is only chosen if its separation is better by half a millimetre, and outlines within another half a
-/// millimetre count as touching.
+/// Maximum difference in metres between two separations, or a separation and a distance. A face of the second shape
+/// must be better by half a millimetre to be chosen, and outlines within another half a millimetre count as touching.
 const ERROR: Fx = fx!(0.001001);
-/// Maximum difference in metres between the distance of A from B and the distance of B from A, apart from a part that
-/// grows with the size of the shapes: twice 20 nm, rounded up.
+/// Maximum difference in metres between the distances of A from B and of B from A: twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
-/// Divisor of the size, for the part that is added to [`DISTANCE_ERROR`].
+/// Divisor of the size, for a part added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;
 
-/// A world with two bodies.
 #[derive(Clone)]
 struct Pair {
     world: World,
@@ -30,10 +27,10 @@ struct Pair {
     shapes: [ShapeId; 2],
 }
 
-/// Moves one shape around another. Returns the number of contacts; `None` if the shapes are refused.
+/// Moves one shape around another. Returns the number of contacts; `None` if a shape is refused.
 ///
 /// # Panics
-/// When the result depends on caches, SIMD or the order, or when a contact is invalid.
+/// When a contact is invalid, or depends on caches, SIMD or the order of the shapes.
 pub fn run(bytes: &[u8]) -> Option<u64> {
     let mut source = Source::new(bytes);
     let wild = generator::config(&mut source);
@@ -43,7 +40,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let new_swapped = Pair::new(config, still, moving, true)?;
     let (mut first, mut bare) = (new.clone(), new.clone());
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
-    // This world tests boxes one pair at a time, while the other worlds may test several pairs in SIMD lanes.
+    // Tests boxes one pair at a time. The other worlds may use SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
     assert!(scalar, "every machine has the scalar backend");
     let mut contacts = 0;
@@ -51,8 +48,8 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
         let position = source.mostly_vec(-reach, reach);
         let angle = source.angle();
-        // The contact of a pair that has hardly moved keeps its manifold, whose normal may be that of a tie.
-        // Worlds without a kept manifold are therefore compared with the distance and with exchanged shapes.
+        // A pair that has hardly moved keeps its manifold, possibly that of a tie. Fresh worlds are therefore compared
+        // with the distance and with exchanged shapes.
         let (mut fresh, mut swapped) = (new.clone(), new_swapped.clone());
         for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.place(position, angle);
@@ -120,20 +117,19 @@ impl Pair {
 
     fn place(&mut self, position: Vec2<Fx>, angle: Angle) {
         let [_, moving] = self.bodies;
-        // The command is refused beyond the end of the world, and the body stays in place.
+        // Refused beyond the end of the world.
         let _ = self.world.set_transform(moving, position, angle);
         self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
 
-    /// The contact, with its normal from the shape that was created first to the second one, and whether it is
-    /// touching.
+    /// The contact, and whether it is touching.
     fn contact(&self) -> Option<(Manifold, bool)> {
         let contact = self.world.contacts().next()?;
         Some((*contact.manifold, contact.touching))
     }
 }
 
-/// Checks that exchanging the shapes does not change their distance and, if they are apart, reverses the normal.
+/// Exchanging the shapes must not change their distance, and must reverse the normal if they are apart.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };
@@ -165,8 +161,8 @@ fn distances(pair: &Pair) {
     }
 }
 
-/// Whether a polygon has a corner at which its outline continues, or returns, in almost the same direction: normals are
-/// not precise enough to decide which of the two edges is nearest.
+/// Whether consecutive edges of a polygon are almost parallel. Normals are not precise enough to decide which of them
+/// is nearest.
 fn is_thin(def: &ShapeDef) -> bool {
     let Geometry::Polygon(polygon) = &def.geometry else { return false };
     let normals = polygon.normals();

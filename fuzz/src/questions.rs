@@ -1,5 +1,5 @@
-//! Checks queries: the results must not depend on the broad phase or its history, and in ordinary scenes every result
-//! must agree with the distances of all shapes, one by one.
+//! Checks queries. Results must not depend on the broad phase or its history. In ordinary scenes they must agree with
+//! the distances of all shapes.
 
 use lockstep2d::body::{Geometry, Polygon, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -15,11 +15,11 @@ use crate::source::Source;
 
 mod singles;
 
-/// A run ends when the sum of [`generator::cost`] over its ticks exceeds this.
+/// Maximum of [`generator::cost`], summed over the ticks.
 const COST_MAX: u64 = 60_000;
 /// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
-/// Maximum depth in metres of a probe in a shape that it rests on, or in a shape beyond a seam that it passes.
+/// Maximum depth in metres of a probe in a shape that it rests on, or in one beyond a seam that it passes.
 const DEPTH_OF_REST: Fx = fx!(0.021);
 
 /// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
@@ -39,7 +39,7 @@ pub fn run(bytes: &[u8]) -> u64 {
         for command in &commands {
             assert_eq!(world.execute(command), sweep.execute(command), "{command:?}");
         }
-        // Queries are tested between commands and the next tick, and after the tick.
+        // Between commands and the next tick, too.
         if source.one_in(3) {
             answers += ask(&mut source, &world, &sweep);
         }
@@ -55,13 +55,13 @@ pub fn run(bytes: &[u8]) -> u64 {
     answers
 }
 
-/// One world with different broad phases: the tree and sweep and prune with their history, and brute force.
+/// One world with three broad phases, two of which have a history.
 struct Questions<'a> {
     world: &'a World,
     sweep: &'a World,
     brute_force: World,
     filter: QueryFilter,
-    /// Whether sizes and positions are moderate, so that rounding errors are small.
+    /// Whether rounding errors are small.
     ordinary: bool,
 }
 
@@ -113,7 +113,6 @@ fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
 }
 
 impl Questions<'_> {
-    /// Runs a query on all three worlds and checks that the results are equal.
     fn same<A: PartialEq + std::fmt::Debug>(&self, ask: impl Fn(&World) -> A) -> A {
         let answer = ask(self.world);
         assert_eq!(answer, ask(&self.brute_force), "the tree and brute force differ");
@@ -121,7 +120,7 @@ impl Questions<'_> {
         answer
     }
 
-    /// The shapes that a query can find, by the definition of its filter.
+    /// The shapes that a query can find, by its filter.
     fn seen(&self) -> impl Iterator<Item = ShapeId> {
         self.world.shapes().filter_map(|(id, shape)| {
             let (filter, own) = (self.filter, shape.filter());
@@ -133,7 +132,6 @@ impl Questions<'_> {
         })
     }
 
-    /// Whether a shape's body is enabled; queries ignore other shapes.
     fn is_enabled(&self, shape: ShapeId) -> bool {
         let body = self.world.shape(shape).and_then(|shape| self.world.body(shape.body()));
         body.is_some_and(|body| body.is_enabled())
@@ -164,15 +162,13 @@ impl Questions<'_> {
         Some(Probe::new(shape.geometry, self.place(source)).ok()?.turned(source.angle()))
     }
 
-    /// The distance of a point from a shape.
     fn distance(&self, point: Vec2<Fx>, shape: ShapeId) -> Fx {
         let radius = fx!(0.002);
         let probe = Probe::new(Geometry::Circle { radius }, point).expect("a valid size");
         self.world.probe_distance(&probe, shape).expect("the shape exists").distance.saturating_add(radius)
     }
 
-    /// Checks that exactly the shapes that overlap are found. `distance` returns the distance of a shape from the
-    /// point, probe or box of the query.
+    /// Checks that the shapes that overlap are found. `distance` is the distance of a shape from the query's shape.
     fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
         assert!(found.is_sorted_by(|a, b| a < b), "the shapes must be in slot order");
         if self.ordinary {
@@ -262,7 +258,7 @@ impl Questions<'_> {
         let first = self.same(|world| world.cast_ray(origin, way, self.filter));
         assert_eq!(first, hits.first().copied(), "the single hit must be the first of all hits");
         assert_eq!(self.same(|world| world.cast_ray_any(origin, way, self.filter)), first.is_some());
-        // Hits with equal rounded fractions may have been ordered by the fractions before rounding.
+        // Hits with equal rounded fractions may be ordered by the exact fractions.
         assert!(hits.is_sorted_by_key(|hit| hit.fraction), "hits must be in ascending order of the fraction");
         let seen: Vec<_> = self.seen().collect();
         for hit in &hits {
@@ -309,8 +305,7 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Checks that a cast stops where it touches, and that it has passed no shape. `distance` returns the distance of a
-    /// shape at a fraction of the cast.
+    /// Checks that a cast stops where it touches, and passes no shape. `distance` is that of a shape at a fraction.
     fn check_cast(&self, hit: Option<CastHit>, distance: impl Fn(Fx, ShapeId) -> Fx) {
         let touched_before = |shape| distance(Fx::ZERO, shape) <= TOLERANCE;
         if let Some(hit) = hit {
@@ -330,7 +325,7 @@ impl Questions<'_> {
         }
     }
 
-    /// Tests the planes found for a mover, and the plane solver with arbitrary push limits and separations.
+    /// Tests the planes of a mover, and the plane solver with arbitrary limits and separations.
     fn planes(&self, source: &mut Source<'_>) -> bool {
         let Some(probe) = self.probe(source) else { return false };
         let within = source.mostly(0, 2000);
@@ -350,7 +345,7 @@ impl Questions<'_> {
         !planes.is_empty()
     }
 
-    /// Moves a character up to four times, without stepping the world.
+    /// Moves a character without stepping the world.
     fn walks(&self, source: &mut Source<'_>) -> bool {
         let shape = if self.ordinary { shapes::ordinary_shape(source) } else { shapes::shape(source) };
         let Ok(mover) = Mover::new(shape.geometry) else { return false };
@@ -367,8 +362,8 @@ impl Questions<'_> {
         met
     }
 
-    /// Returns the shapes in which a moving point or probe is deeper than the tolerance, at 17 samples of its path,
-    /// with the fraction of the path. Links are left out, because they may be one-sided.
+    /// The shapes in which 17 samples of a path are deeper than the tolerance, and the fraction. Links are left out
+    /// because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,

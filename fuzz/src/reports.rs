@@ -1,4 +1,4 @@
-//! Compares the reports of two peers of a game, one of which may have diverged or may have forged its report.
+//! Compares the reports of two peers, one of which may have diverged or forged its report.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -17,7 +17,7 @@ use crate::verdicts;
 const HEADER_LEN: usize = 24;
 const HASH_LEN: usize = 16;
 
-/// The body of a report, after the header, as described in `docs/FORMAT.md`.
+/// A report after its header, as described in `docs/FORMAT.md`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Body {
     rules: (String, u32),
@@ -31,7 +31,7 @@ struct Body {
     replay: Vec<u8>,
 }
 
-/// The phase digests of a tick, as described in `docs/FORMAT.md`.
+/// The phase digests of a tick.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Phases {
     digests: Vec<StateHash>,
@@ -49,19 +49,18 @@ struct Flip {
     bit: u32,
 }
 
-/// Setup and inputs of a game.
 struct Trajectory {
     setup: SandboxSetup,
     inputs: Vec<Vec<Command>>,
     interval: u32,
 }
 
-/// Reads the report of a peer that may have diverged or may have forged its report, and compares it with the report of
-/// a peer that followed the rules. Returns the result as one word.
+/// Compares the report of a peer that may have diverged or forged it with that of a peer that followed the rules.
+/// Returns the result as one word.
 ///
 /// # Panics
-/// If an unchanged report within the limits is refused, if a report that was changed without correcting its hash is
-/// accepted, if a side that followed the rules is blamed, or if the blame depends on the order of the sides.
+/// If an unchanged report within the limits is refused, one with a wrong hash is accepted, a side that followed the
+/// rules is blamed, or the blame depends on the order of the sides.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -111,7 +110,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
         Ok(found) => found,
         Err(_) => return "not compared",
     };
-    // The right side has followed the rules, whatever the other report contains.
+    // The right side has followed the rules.
     assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
     let mirrored = compare::<Sandbox>(&right, &left, &limits).map(|found| found.blame);
     let same = match (found.blame, &mirrored) {
@@ -148,7 +147,6 @@ impl Trajectory {
         Trajectory { setup, inputs, interval }
     }
 
-    /// Creates the report of a peer that plays the game, with or without a bit flip.
     fn report(&self, source: &mut Source<'_>, flip: Option<Flip>) -> DesyncReport {
         let (mut recorder, mut game) =
             Recorder::<Sandbox>::start(&self.setup, self.interval).expect("a valid setup");
@@ -186,7 +184,7 @@ fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
     sealed
 }
 
-/// Makes one change; `replay` is the genuine replay.
+/// Makes one change. `replay` is the genuine replay.
 fn forge(source: &mut Source<'_>, body: &mut Body, replay: &[u8]) {
     let at = source.below(body.history.len());
     match source.below(13) {

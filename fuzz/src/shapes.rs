@@ -1,4 +1,4 @@
-//! Generates shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
+//! Generates shapes: mostly 0.1 to 2 m, sometimes at or beyond the limits.
 
 use lockstep2d::body::{
     Area, Attraction, Chain, EventSwitches, Falloff, Filter, Geometry, Material, Mixing, Polygon, ShapeDef,
@@ -33,7 +33,7 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
     def
 }
 
-/// An area. Each effect occurs in a third or a half of all areas, mostly moderate, sometimes beyond what is allowed.
+/// An area, mostly moderate.
 pub fn area(source: &mut Source<'_>) -> Area {
     let mut area = Area::new();
     if source.one_in(3) {
@@ -121,7 +121,7 @@ fn ordinary_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
     def
 }
 
-/// A chain for the ground: links between points with evenly spaced x coordinates from -8 m to 8 m.
+/// A chain for the ground, from -8 m to 8 m.
 pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let stretches = source.pick(&[8, 4, 16, 1, 2]);
     let point = |source: &mut Source<'_>, index: i64| {
@@ -129,7 +129,7 @@ pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
         Vec2::new(x, source.thousandths(-300, 300))
     };
     let mut points: Vec<_> = (0..=stretches).map(|index| point(source, index)).collect();
-    // One-sided chains are solid from above if they run from right to left.
+    // One-sided chains from right to left are solid from above.
     let one_sided = source.one_in(3);
     if one_sided {
         points.reverse();
@@ -156,7 +156,6 @@ pub fn chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     chain.links().unwrap_or_default()
 }
 
-/// Whether a polygon is not too thin.
 fn is_plump(polygon: &Polygon) -> bool {
     let half = half_extents(&ShapeDef::new(*polygon));
     half.x > lockstep2d::fx!(0.1) && half.y > lockstep2d::fx!(0.1)
@@ -277,7 +276,7 @@ fn extreme(source: &mut Source<'_>) -> Geometry {
     }
 }
 
-/// A polygon as stored in a file: any vertices that the decoder accepts.
+/// A polygon as stored in a file.
 fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     let grid = source.pick(&[1i32 << 22, 1 << 12, 1 << 28, 1]);
     let count = 3 + source.below(6);
@@ -288,7 +287,7 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     codec::decode(&codec::encode(&(vertices, radius))).ok()
 }
 
-/// A definition for a shape of the world: its present one with one property changed, or a new one.
+/// The present definition of a shape with one property changed, or a new one.
 pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> ShapeDef {
     let fresh = shape(source);
     let Some(mut def) = world.shape(id).map(|shape| *shape.def()) else { return fresh };

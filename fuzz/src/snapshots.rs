@@ -15,8 +15,8 @@ const HASH_BYTES: usize = 16;
 /// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 30_000;
 
-/// Reads the snapshot that the bytes describe: the bytes themselves, or the snapshot of a small scene with single
-/// fields or bytes changed and, in most cases, the hash repaired. Returns whether it is accepted.
+/// Reads the bytes, or the snapshot of a small scene with fields or bytes changed and mostly the hash repaired. Returns
+/// whether it is accepted.
 ///
 /// # Panics
 /// When an accepted world has another encoding, or breaks an invariant or depends on its caches or its broad phase
@@ -84,7 +84,7 @@ pub(crate) fn repair(snapshot: &mut [u8]) {
     snapshot[end..].copy_from_slice(&hash.0.to_le_bytes());
 }
 
-/// Reads the bytes. If they decode to a world, this world has to stay valid and independent of its caches.
+/// A world read from the bytes must stay valid and independent of its caches.
 fn accept(bytes: &[u8], mut player: Option<(&mut Source<'_>, &mut Generator)>) -> bool {
     let Ok(mut world) = World::from_bytes(bytes) else { return false };
     assert_eq!(world.validate(), Ok(()), "an accepted world is valid");

@@ -1,4 +1,4 @@
-//! Decisions drawn from the fuzzer's bytes. When the bytes end, every decision is the first option, so that a short
+//! Decisions drawn from the fuzzer's bytes. When the bytes end, most decisions are the first option, so that a short
 //! input makes a short scene.
 
 use arbitrary::Unstructured;
@@ -39,13 +39,13 @@ const EDGES: [i64; 24] = [
 ];
 
 impl<'a> Source<'a> {
-    /// Creates a source of decisions from bytes.
+    /// Creates a source.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Self {
         Source { bytes: Unstructured::new(bytes), ordinary: false }
     }
 
-    /// Sets whether [`Source::mostly`] avoids limits from now on.
+    /// Sets whether [`Source::mostly`] avoids limits.
     pub fn set_ordinary(&mut self, ordinary: bool) {
         self.ordinary = ordinary;
     }

@@ -1,4 +1,4 @@
-//! Verifies replays of small scenes, as recorded, changed or forged, and arbitrary bytes.
+//! Verifies replays of small scenes, recorded, changed or forged, and arbitrary bytes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
@@ -58,14 +58,11 @@ pub fn run(bytes: &[u8]) -> Verdict {
 }
 
 /// A small scene, and the generator of its commands.
-///
-/// # Panics
-/// Never: settings that a world refuses are replaced by the default.
 pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();
     let mut generator = Generator::new(source);
-    // A setup with a failing command is refused, so failing commands are removed.
+    // A setup with a failing command would be refused.
     let mut world = World::new(config).expect("checked");
     let mut commands = generator.setup(source);
     commands.retain(|command| world.execute(command).is_ok());
@@ -73,7 +70,6 @@ pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     (SandboxSetup { config, commands }, generator)
 }
 
-/// Records a replay of a small [`scene`].
 fn record(source: &mut Source<'_>) -> Vec<u8> {
     let (setup, mut generator) = scene(source);
     let interval = 1 + source.below(9) as u32;

@@ -1,4 +1,4 @@
-//! Checks that the targets whose input is a file or packets reach many results, and prints their speed.
+//! The targets whose input is a file or packets reach many results. Prints their speed.
 
 use std::collections::BTreeMap;
 

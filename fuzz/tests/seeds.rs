@@ -5,7 +5,7 @@ use lockstep2d_fuzz::{
     verdicts,
 };
 
-/// Runs the seeds of a target, and checks that there are more than five.
+/// Runs the seeds of a target. There must be more than five.
 fn run<T>(target: &str, run: impl Fn(&[u8]) -> T) {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target);
     let mut count = 0;

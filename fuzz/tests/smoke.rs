@@ -1,5 +1,4 @@
-//! Runs 200 to 20 000 random inputs for each of most targets without the fuzzer: checks that the targets work and, for
-//! some, that their scenes have many contacts.
+//! Runs 200 to 20 000 random inputs for each of most targets without the fuzzer.
 
 use lockstep2d::math::Rng;
 use lockstep2d_fuzz::{

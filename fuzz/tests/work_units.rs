@@ -1,8 +1,5 @@
-//! Work units bound the time in random worlds, too: no setup and no tick takes more than a microsecond for each unit
-//! that it is charged, or three with debug assertions. `tests/work_units` of the library has the worlds that are made
-//! to be expensive.
-//!
-//! The environment variable `WORLDS` sets the number of worlds, 200 by default.
+//! Work units bound the time of random worlds: no setup and no tick may take more than a microsecond per unit, or three
+//! with debug assertions. `WORLDS` sets the number of worlds, 200 by default.
 
 use std::time::{Duration, Instant};
 
@@ -15,10 +12,10 @@ use lockstep2d_fuzz::{generator, verdicts};
 /// Maximum time of a unit of work in nanoseconds, with and without debug assertions and overflow checks.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// Shortest time that is judged alone. The time of a shorter part is judged with the whole file.
+/// Shortest time of a part that is judged alone.
 const JUDGED: Duration = Duration::from_micros(50);
 
-/// Number of runs of a file. The shortest time of each part counts, so that other load on the machine matters little.
+/// Number of runs of a file. The shortest time of each part counts, because of other load on the machine.
 const RUNS: usize = 5;
 
 /// Maximum number of ticks of a world.
@@ -37,7 +34,7 @@ impl Cost {
     }
 }
 
-/// A replay of the scene that the bytes describe, with further commands in two of three ticks.
+/// A replay of the scene that the bytes describe, with further commands.
 fn record(bytes: &[u8]) -> Vec<u8> {
     let mut source = Source::new(bytes);
     let (setup, mut generator) = verdicts::scene(&mut source);
@@ -70,7 +67,7 @@ fn play(file: &[u8]) -> Vec<Cost> {
     }
 }
 
-/// The costs of the setup and of each tick, each in the run in which it was the shortest.
+/// The costs of the setup and of each tick, each from its fastest run.
 fn costs(file: &[u8]) -> Vec<Cost> {
     let mut best = play(file);
     for _ in 1..RUNS {

@@ -1,4 +1,4 @@
-//! Games with a planted fault fail the check in the variant that detects this kind of fault; correct games pass.
+//! Games with a planted fault fail the check in the variant for this kind of fault.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
 #[expect(unreachable_pub, reason = "the file is a library in its own package")]

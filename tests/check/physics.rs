@@ -1,4 +1,4 @@
-//! Games with a physics world: data that is not part of its state must not affect results.
+//! Games with a physics world must not depend on data outside of its state.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::check::{CheckOptions, Depths, Fault, Phases, Variant, check, check_replay};
@@ -9,17 +9,16 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault of a [`Pit`]. It is the setup, not a type parameter, so that the game is compiled only once.
+/// Planted fault, as the setup, so that the game is compiled once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Mistake {
     None,
-    /// The step depends on the world's current contacts, of which there are none after a restore.
+    /// The step depends on the world's contacts, which a restore drops.
     Contacts,
     /// The wind is not saved.
     Wind,
 }
 
-/// A ball that is kicked about in a pit.
 struct Pit {
     mistake: Mistake,
     world: World,
@@ -90,7 +89,7 @@ impl Game for Pit {
     }
 }
 
-/// Returns inputs with a kick in tick 31.
+/// A kick in tick 31.
 fn inputs() -> Vec<Vec<bool>> {
     (0..60).map(|tick| vec![tick == 30]).collect()
 }
@@ -122,8 +121,7 @@ fn who_reads_what_is_no_state_is_found() {
     }
 }
 
-/// The report names the body and its velocity. The minimised log has two ticks: one with the kick, and one in which the
-/// lost wind matters.
+/// The report names the body and its velocity. The minimised log has a kick and a tick in which the lost wind matters.
 #[test]
 fn the_body_and_the_field_are_named() {
     let options = CheckOptions::default().only(&[Variant::Again, Variant::Reloaded]);
@@ -136,7 +134,7 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
-/// A rollback to before the kick keeps the wind of the later state, so the states differ in a tick before the kick.
+/// A rollback to before the kick keeps the later wind.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();
@@ -146,7 +144,7 @@ fn a_rollback_shows_before_it_has_happened() {
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
 
-/// The wind is lost before the step begins, so the report blames no phase of the step.
+/// No phase of the step is blamed.
 #[test]
 fn a_loss_before_the_step_is_the_fault_of_no_phase() {
     let options =

@@ -1,4 +1,4 @@
-//! Every planted fault is found, by the variant that detects this kind of fault.
+//! Every planted fault is found by the variant for its kind.
 
 use lockstep2d::check::{
     CheckError, CheckOptions, Depths, Failure, Fault, Variant, check, check_replay, random_inputs,
@@ -8,7 +8,7 @@ use lockstep2d::replay::Verdict;
 
 use super::toy::{Mistake, Toy};
 
-/// Returns the failure of a toy with a planted fault. The replay of the failure must fail in the same way.
+/// The failure of a toy. Its replay must fail in the same way.
 fn failure(mistake: Mistake) -> Failure {
     let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
     let failure = match check::<Toy>(&mistake, &inputs, &CheckOptions::default()) {
@@ -25,7 +25,7 @@ fn failure(mistake: Mistake) -> Failure {
     failure
 }
 
-/// Returns the paths of the fields that differ.
+/// Paths of the fields that differ.
 fn fields(failure: &Failure) -> Vec<&str> {
     failure.minimised.differences.iter().map(|difference| difference.field().path()).collect()
 }
@@ -60,7 +60,7 @@ fn a_good_game_passes() {
 fn a_field_that_the_save_lacks_is_found() {
     let failure = failure(Mistake::SaveLacksField);
     assert_eq!(found(&failure), (Variant::Reloaded, &Fault::Loaded));
-    // The minimised log has two players who walk up to each other, and one hit.
+    // Two players walk up to each other, and one hits.
     assert!((3..=5).contains(&failure.ticks), "{failure}");
     assert!(failure.to_string().contains("the difference is in state that is not saved"), "{failure}");
 }
@@ -104,7 +104,7 @@ fn a_memory_that_load_leaves_is_found() {
 fn a_hash_that_changes_the_state_is_found() {
     let counts = failure(Mistake::HashCounts);
     assert!(matches!(found(&counts).0, Variant::HashPolled | Variant::HashUnpolled), "{counts}");
-    // The fault is invisible if the hash is polled after every tick.
+    // Invisible if the hash is polled after every tick.
     let tidies = failure(Mistake::HashTidies);
     assert_eq!(found(&tidies), (Variant::HashUnpolled, &Fault::Hash));
     assert_eq!(tidies.ticks, 8);

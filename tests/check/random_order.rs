@@ -1,12 +1,11 @@
-//! The planted fault of `examples/fuzzing`: the iteration order of a `HashMap`, which differs from map to map.
+//! The planted fault of `examples/fuzzing`: the iteration order of a `HashMap`.
 
 use lockstep2d::check::{CheckOptions, Variant, check, check_replay, random_inputs};
 use lockstep2d::math::Rng;
 
 use super::harvest::Harvest;
 
-/// Random logs find the fault. The minimised replay contains little more than two fruits and a player who reaches for
-/// them.
+/// The minimised replay contains little more than two fruits and a player who reaches for them.
 #[test]
 fn random_logs_find_the_order_of_a_hash_map() {
     let mut rng = Rng::new(3);

@@ -6,8 +6,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{LimitKind, Limits, Step, Verdict, VerifiedReplay, verify};
 use lockstep2d::report::{CompareError, Evidence, bisect};
 
-/// Largest number of shapes of a scene in this test. The limit keeps the test short: all variants of a check together
-/// take as long as twenty runs.
+/// Largest number of shapes of a scene: all variants together take as long as twenty runs.
 const SHAPES_MAX: usize = 300;
 
 #[test]
@@ -44,13 +43,12 @@ fn random_commands_pass() {
     }
 }
 
-/// `tick_work` also limits work that is charged while a tick is simulated, in checks and comparisons as in
-/// verification.
+/// `tick_work` also limits work that is charged while a tick is simulated.
 #[test]
 fn the_work_within_a_tick_is_limited_for_checks_and_comparisons() {
     let file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../replays/game.replay")).unwrap();
     let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
-    // The largest work of any tick in units, and the part of this work that is known before that tick is simulated.
+    // The largest work of a tick in units, and the part known before that tick.
     let (mut largest, mut known) = (0, 0);
     loop {
         let before = replay.work();

@@ -7,43 +7,35 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault of a [`Toy`]. It is the setup, not a type parameter, so that the game is compiled only once.
+/// Planted fault, as the setup, so that the game is compiled once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Mistake {
     None,
-    /// The save lacks the cooldowns.
     SaveLacksField,
-    /// The save and the hash lack the cooldowns.
     BothLackField,
-    /// The hash lacks the cooldowns.
     HashLacksField,
-    /// A counter shared by all games affects the state.
+    /// A shared counter affects the state.
     Global,
-    /// `load` does not recompute the total, which `step` uses.
+    /// `load` does not recompute the total.
     LoadKeepsCache,
-    /// `step` caches the last hit, and invalidates it only when another player hits.
+    /// `step` invalidates the last hit only when another player hits.
     StaleMemory,
-    /// Each call of `state_hash` is counted in the state.
+    /// Calls of `state_hash` are counted in the state.
     HashCounts,
-    /// A call of `state_hash` changes the next step.
+    /// `state_hash` changes the next step.
     HashTidies,
-    /// The save contains an unordered set.
     SaveIsUnordered,
-    /// A claim is the number of calls of `state_hash`, `work` and `claims`.
+    /// A claim counts calls of `state_hash`, `work` and `claims`.
     ClaimsCount,
-    /// The work is the number of calls of `state_hash`, `work` and `claims`.
+    /// The work counts calls of `state_hash`, `work` and `claims`.
     WorkCounts,
-    /// Two claims have the same name.
     ClaimsTwice,
-    /// A claim depends on a shared counter.
     ClaimsGlobal,
-    /// The save cannot be decoded.
     Unreadable,
-    /// The work exceeds every limit.
     WorkIsHuge,
 }
 
-/// Two players walk along a line and hit each other. A player needs time to cool down after a hit.
+/// Two players walk along a line and hit each other, with time to cool down.
 pub(crate) struct Toy {
     mistake: Mistake,
     state: State,
@@ -71,7 +63,6 @@ pub(crate) struct Save {
     flag: Flag,
 }
 
-/// A set without an order, which the module `unordered` encodes.
 #[expect(clippy::disallowed_types, reason = "a planted fault")]
 type Unordered = std::collections::HashSet<u64>;
 
@@ -89,7 +80,7 @@ mod unordered {
     }
 }
 
-/// A byte. Decoding accepts at most 1, but [`Mistake::Unreadable`] encodes it as 2.
+/// Decoding accepts at most 1; [`Mistake::Unreadable`] encodes 2.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(try_from = "u8")]
 pub(crate) struct Flag(u8);

@@ -1,4 +1,4 @@
-//! Helpers that the tests share: the committed hashes, and sweeps.
+//! Committed hashes, and sweeps.
 
 pub mod sweep;
 
@@ -17,12 +17,12 @@ pub struct Golden {
     pub hash: String,
 }
 
-/// Returns the lines of `tests/goldens.txt` for the current semantics.
+/// The lines of `tests/goldens.txt` for the current semantics.
 pub fn goldens() -> Vec<Golden> {
     goldens_of("tests/goldens.txt")
 }
 
-/// Returns the lines of a file of hashes for the current semantics: semantics, scene, ticks, hash.
+/// The lines of a file for the current semantics: semantics, scene, ticks, hash.
 pub fn goldens_of(file: &str) -> Vec<Golden> {
     let text = std::fs::read_to_string(root().join(file)).expect("a file of hashes");
     let semantics = lockstep2d::SEMANTICS.to_string();
@@ -41,7 +41,7 @@ pub fn goldens_of(file: &str) -> Vec<Golden> {
         .collect()
 }
 
-/// Returns the root folder of the repository.
+/// The root folder of the repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()

@@ -1,5 +1,5 @@
-// Runs a WebAssembly program that takes arguments and writes text: `node wasi.mjs FILE [ARGUMENT...]`. Replaces
-// `node:wasi`, which in some versions of node writes to a stale buffer after the program's memory has grown.
+// Runs a WebAssembly program: `node wasi.mjs FILE [ARGUMENT...]`. In some versions of node, `node:wasi` writes to a
+// stale buffer after the program's memory has grown.
 import { readFileSync, writeSync } from "node:fs";
 import process from "node:process";
 
@@ -8,7 +8,7 @@ const OK = 0, BAD_FILE = 8;
 class Exit extends Error {}
 
 let memory;
-// Views are created anew for each call, because growing the memory detaches the old buffer.
+// Growing the memory detaches the old buffer.
 const bytes = () => new Uint8Array(memory.buffer);
 const set = (at, number) => new DataView(memory.buffer).setUint32(at, number, true);
 const get = (at) => new DataView(memory.buffer).getUint32(at, true);

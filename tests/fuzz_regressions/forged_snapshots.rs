@@ -1,4 +1,4 @@
-//! Snapshots with a correct hash, but of a world that cannot exist.
+//! Snapshots with a correct hash of impossible worlds.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::world::World;
 
 use super::weightless;
 
-/// Returns the bytes of a world after an edit, with the hash at the end repaired.
+/// The bytes of a world after an edit, with the hash repaired.
 fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = world.to_bytes();
     edit(&mut bytes);
@@ -17,7 +17,7 @@ fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
-/// Overwrites the first occurrence of a number.
+/// Overwrites the first occurrence.
 fn overwrite(bytes: &mut [u8], old: Fx, new: Fx) {
     let old = old.to_bits().to_le_bytes();
     let at = bytes.windows(8).position(|window| window == old).expect("the number occurs");
@@ -48,15 +48,14 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // If such a snapshot were accepted, the contacts of the body would be kept a tick longer after it stops than in a
-    // world without caches.
+    // Its contacts would be kept a tick longer after it stops than in a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
-        // In the bytes of a body, the velocity follows two coordinates and an angle.
+        // Velocity follows two coordinates and an angle.
         bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();

@@ -1,7 +1,4 @@
-//! Regression tests: minimal cases of findings of the fuzz targets (`fuzz/`).
-//!
-//! Untrusted data leads to a typed error or a valid world, never to a panic. Results do not depend on caches, and
-//! contact points are where the shapes touch.
+//! Minimal cases of findings of the fuzz targets (`fuzz/`).
 
 mod forged_snapshots;
 
@@ -16,7 +13,7 @@ fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
-/// Steps a world and a copy without caches, and expects equal digests after every tick.
+/// Expects digests equal to those of a copy without caches.
 fn caches_decide_nothing(world: &mut World, ticks: u64) {
     let mut bare = world.clone();
     for _ in 0..ticks {
@@ -30,8 +27,7 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex coincides with an end of every edge, so no vertex is on the wrong side of an edge. If such an
-    // outline were accepted, the computation of its mass would divide by an area of zero.
+    // Every vertex is an end of every edge, so none is on the wrong side. The area, by which the mass divides, is zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }
@@ -45,7 +41,7 @@ fn an_outline_that_goes_round_twice_is_refused() {
 
 #[test]
 fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
-    // The centre of mass is outside the world and is clamped, although the body does not move.
+    // The centre of mass is clamped, although the body does not move.
     let mut world = weightless();
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::new(fx!(10), fx!(0)), gyration: fx!(1) };
     let body = BodyDef::dynamic().position((WORLD_EXTENT_MAX, fx!(0))).mass(mass);
@@ -55,7 +51,7 @@ fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
 
 #[test]
 fn a_removed_shape_moves_the_others_as_their_caches_say() {
-    // The centre of mass moves, and rounding moves the remaining shapes with it.
+    // The centre of mass moves, and rounding moves the remaining shapes.
     let mut world = weightless();
     for turn in 1..40 {
         let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset((x, y));
@@ -107,7 +103,7 @@ fn the_last_tick_of_all_is_followed_by_no_panic() {
 
 #[test]
 fn a_large_ball_is_pushed_out_of_the_floor() {
-    // If distances and radii saturated at 16 m, their difference, the separation, would be zero.
+    // If distances and radii saturated at 16 m, the separation would be zero.
     let mut world = weightless();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(50)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-50))), &[floor]).unwrap();
@@ -126,7 +122,7 @@ fn a_large_ball_beside_a_corner_does_not_touch_it() {
     let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(-10), fx!(-10))), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
-    // The centre is 63 m from the corner, 13 m more than the radius, but the AABBs overlap.
+    // The AABBs overlap.
     world.spawn(&BodyDef::dynamic().position((fx!(45), fx!(45))), &[ball]).unwrap();
     world.step();
     assert!(world.events().contact_begin.is_empty(), "expected no contact at a distance of 13 m");
@@ -148,8 +144,8 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
 
 #[test]
 fn impulses_that_grow_over_sub_steps_are_no_overflow() {
-    // An impulse accumulates over several updates of at most 512 m/s and is applied at once when the next sub-step
-    // starts. The balls start in one place, where each pushes all others, and the gravity reaches the speed limit.
+    // An impulse accumulates several updates of at most 512 m/s and is applied at once in the next sub-step. Each ball
+    // pushes all others, and gravity reaches the speed limit.
     let gravity = Vec2::new(fx!(0), fx!(-100000));
     let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
@@ -169,8 +165,7 @@ fn impulses_that_grow_over_sub_steps_are_no_overflow() {
 
 #[test]
 fn turns_and_levers_at_their_limits_are_no_overflow() {
-    // Bodies that rotate about far-away centres and separate: nothing stops them within the tick. Their displacement is
-    // the sum of three products, two of which fill 63 bits each.
+    // The displacement of bodies that rotate about far centres is the sum of three products, two of which fill 63 bits.
     let sides = [1i64, -1];
     for (arm_a, arm_b, turn_a, turn_b) in sides
         .into_iter()
@@ -195,8 +190,8 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
 
 #[test]
 fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_format() {
-    // Both axes of a hinge push at once, and together change a body's velocity along one axis by more than 512 m/s.
-    // Such a sum saturates, and the magnitude of the most negative number does not fit a signed number.
+    // Both axes of a hinge together change a velocity by more than 512 m/s. The magnitude of the most negative number
+    // does not fit a signed number.
     for turn in 0..64u32 {
         let mut world = weightless();
         let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
@@ -229,7 +224,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // If each shape searched all earlier ones for bodies to wake, 20 000 shapes would take a minute.
+    // A search of all earlier shapes would take a minute for 20 000 shapes.
     let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };
@@ -239,7 +234,7 @@ fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
 
 #[test]
 fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
-    // Only the new shape is tested for overlaps, not the other shapes of its body.
+    // The other shapes of the body are not tested.
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
@@ -252,7 +247,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // Each of the commands below searches all joints of the body for sleeping bodies to wake.
+    // Each command below searches all joints of the body.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
@@ -277,7 +272,7 @@ fn kinematic_bodies_that_start_to_move_are_work() {
 #[test]
 fn contacts_that_have_parted_do_not_rest() {
     // A body that is pushed out of an overlap leaves its fat box within the tick. If it fell asleep before the pairs
-    // are updated, its separated contacts would be kept as sleeping contacts until the caches are cleared.
+    // are updated, its separated contacts would be kept until the caches are cleared.
     let mut rng = lockstep2d::math::Rng::new(1);
     for _ in 0..40 {
         let gravity = Vec2::new(fx!(25), fx!(-40));
@@ -304,7 +299,7 @@ fn contacts_that_have_parted_do_not_rest() {
 
 #[test]
 fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
-    // At 30 Hz or less a displacement may saturate on both axes. The sum of its squares must not overflow.
+    // At 30 Hz or less a displacement may saturate on both axes. The sum of squares must not overflow.
     for tick_rate in [10, 20, 30] {
         let mut config = Config { tick_rate, ..Config::default() };
         config.solver.sub_steps = (60 / tick_rate).max(4);
@@ -321,9 +316,8 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // When a shape is removed, only the list of active contacts is searched for its contacts, and the contacts of a
-    // body that falls asleep leave this list. The combined material of two shapes is cached under their slots. It must
-    // not be used for a new shape that reuses one of these slots before the next tick.
+    // The material of two shapes is cached under their slots. Contacts of sleeping bodies are not among the active ones
+    // that a removal searches, and a new shape reuses the slot before the next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();
@@ -339,8 +333,7 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // At one in four angles, rounding may put the ball's centre between the two sides of the capsule. The contact would
-    // then be a radius deep.
+    // At one in four angles, rounding may put the ball's centre between the sides of the capsule, a radius deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
     let ball = Geometry::circle(fx!(0.007)).expect("valid");
@@ -363,8 +356,7 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge whose normal is most opposed to the normal of the bar's side lies beside the bar. The contact points
-    // must lie on the bar.
+    // The edge most opposed to the bar's side lies beside the bar. The contact points must lie on it.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");
@@ -385,8 +377,8 @@ fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
 
 #[test]
 fn an_overlap_beyond_the_range_of_separations_at_a_predicted_impact() {
-    // The slivers face each other with corners near their middles. The upper one turns by 19 degrees in the tick, so
-    // that one of its ends is more than 16 m inside the lower one when the corners are predicted to touch.
+    // The upper sliver turns by 19 degrees in the tick: one end is more than 16 m inside the lower one when the corners
+    // are predicted to touch.
     let sliver = |x: Fx, y: Fx| {
         let corners = [(fx!(-100), fx!(0)), (x, y), (fx!(100), fx!(0))].map(Vec2::from);
         ShapeDef::new(Polygon::hull(&corners).unwrap())

@@ -12,7 +12,6 @@ fn finding(variant: Variant, fault: Fault) -> Finding {
     Finding { variant, fault, tick: 9, played: 9, phase: None, rollback: None, differences: Vec::new() }
 }
 
-/// Returns `count` differing fields.
 fn differing(count: usize) -> Vec<Difference> {
     let (a, b) = (fields(&vec![1; count]).expect("numbers"), fields(&vec![2; count]).expect("numbers"));
     differences(&a, &b)
@@ -86,7 +85,7 @@ fn a_finding_is_not_endless() {
     assert!(lines < 50 && text.contains(&format!("\n    and {} more\n", 1000 - lines)), "{text}");
 }
 
-/// Each kind of fault has its own explanation of the usual cause.
+/// Each kind of fault has its own hint.
 #[test]
 fn what_it_usually_is() {
     let too_much =

@@ -1,4 +1,4 @@
-//! Messages about snapshots and reports, and about flaws in them.
+//! Messages about snapshots and reports.
 
 use lockstep2d::codec::{DECODE_BYTES_MAX, DecodeError};
 use lockstep2d::inspect::{InspectError, Value, differences, fields};

@@ -1,4 +1,4 @@
-//! A game that implements only the required items of `Game`.
+//! A game with the required items of `Game` only.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -6,7 +6,6 @@ use lockstep2d::replay::{Limits, Recording, verify};
 
 use crate::says;
 
-/// Adds up all inputs.
 struct Bare {
     pressed: u32,
 }

@@ -1,4 +1,4 @@
-//! Error messages of the library: the exact sentences, with their values.
+//! Error messages of the library.
 
 mod check;
 mod files;
@@ -9,7 +9,6 @@ mod world;
 
 use std::fmt::Display;
 
-/// Compares the `Display` output of values with the expected text.
 #[track_caller]
 fn says<T: Display>(table: impl IntoIterator<Item = (T, &'static str)>) {
     for (value, expected) in table {

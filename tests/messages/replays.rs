@@ -1,4 +1,4 @@
-//! Messages about replays: flaws of files, and verdicts.
+//! Messages about replays.
 
 use lockstep2d::codec::DecodeError;
 use lockstep2d::hash::StateHash;

@@ -8,7 +8,7 @@ use lockstep2d::world::{Section, Violation};
 
 use crate::says;
 
-/// Encoded handle of slot 7 in generation 2.
+/// Slot 7 in generation 2.
 const SLOT_7: [u8; 8] = [7, 0, 0, 0, 2, 0, 0, 0];
 
 #[test]
@@ -35,7 +35,7 @@ fn geometry() {
     ]);
 }
 
-/// Each message names the size that is out of range, and the value that the caller gave.
+/// Each message names the size and the given value.
 #[test]
 fn sizes_out_of_range() {
     let origin = (fx!(0), fx!(0));
@@ -145,7 +145,7 @@ fn values_out_of_range() {
     ]);
 }
 
-/// A message gives a range in a form that depends on its ends.
+/// The form of a range depends on its ends.
 #[test]
 fn ranges() {
     let joint = |min, max| WorldError::JointOutOfRange { what: "motor speed", value: fx!(-7.5), min, max };

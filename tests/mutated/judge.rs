@@ -1,4 +1,4 @@
-//! Mutates copies of a few valid files, and counts the answers of their readers.
+//! Mutates valid files, and counts the answers of their readers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -10,15 +10,15 @@ use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 use crate::memory;
 use crate::mutation::{below, mutate, repair};
 
-/// Time limit for one file, in seconds. A longer time counts as a hang.
+/// Time limit for one file in seconds.
 const SECONDS_MAX: u64 = 5;
-/// Largest peak memory use for one file, in bytes.
+/// Largest memory use for one file in bytes.
 const MEMORY_MAX: usize = 32 << 20;
 /// Largest size of a small file, in bytes.
 const SMALL: usize = 6000;
-/// One in this number of files is derived from a file that is not small.
+/// One in this number of files is not small.
 const LARGE_ONE_IN: u32 = 50;
-/// Decoded content of a replay, with its verdict.
+/// Decoded content of a replay.
 #[derive(PartialEq, Eq)]
 struct Trajectory {
     setup: Vec<u8>,
@@ -39,20 +39,18 @@ impl Trajectory {
     }
 }
 
-/// Counts of answers, and the largest costs, over many files.
 #[derive(Default)]
 pub(crate) struct Figures {
     pub(crate) answers: BTreeMap<String, u64>,
     slowest: Duration,
-    /// Largest peak memory use in bytes.
+    /// In bytes.
     memory: usize,
-    /// Largest peak memory use as a multiple of the file's size, where files of less than 1000 bytes count as 1000
-    /// bytes.
+    /// As a multiple of the file's size, at least 1000 bytes.
     multiple: usize,
 }
 
 impl Figures {
-    /// Reads a file, checks the time and memory limits, and counts the answer.
+    /// Reads a file within the limits, and counts the answer.
     pub(crate) fn count<T>(
         &mut self,
         file: &[u8],
@@ -83,8 +81,7 @@ impl Figures {
     }
 }
 
-/// Returns the CPU time of this thread, which does not depend on the load of the machine. Where the system does not
-/// report it, returns the elapsed time.
+/// CPU time of this thread, or elapsed time where the system does not report it.
 fn time_used() -> Duration {
     let figures = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     match figures.split(' ').next().and_then(|nanoseconds| nanoseconds.parse().ok()) {
@@ -99,12 +96,12 @@ fn started() -> std::time::Instant {
     *START.get_or_init(std::time::Instant::now)
 }
 
-/// Returns the number of files per test: `MUTATIONS` if it is set, `few` otherwise.
+/// `MUTATIONS` if it is set, otherwise `few`.
 pub(crate) fn files_wanted(few: u64) -> u64 {
     std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }
 
-/// Changes a random file in one to three ways, and repairs its checksums in half of the cases.
+/// Changes a random file in one to three ways, half of the time with repaired checksums.
 pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     let (small, large): (Vec<_>, Vec<_>) = originals.iter().partition(|file| file.len() <= SMALL);
     let kind = if rng.below(LARGE_ONE_IN) == 0 && !large.is_empty() { large } else { small };
@@ -120,7 +117,7 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     file
 }
 
-/// Mutates and verifies replays: an accepted one must have the setup, inputs and verdict of an original.
+/// An accepted replay must have the setup, inputs and verdict of an original.
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));

@@ -1,7 +1,7 @@
-//! Mutated files: thousands of damaged or forged files, derived from valid ones. Their readers answer in bounded time
-//! and memory, and accept no replay whose setup, inputs or verdict differ from those of an original.
+//! Thousands of damaged or forged files. Readers answer in bounded time and memory, and accept no replay that differs
+//! from the originals in setup, inputs or verdict.
 //!
-//! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` is the long run and prints figures.
+//! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` prints figures.
 #![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 mod judge;
@@ -19,11 +19,11 @@ use judge::{Figures, check_replays, files_wanted, mutated};
 
 /// Default number of files per test.
 const FILES: u64 = 2000;
-/// Largest size of a file that is mutated, in bytes: larger files only take longer.
+/// Largest size of an original in bytes: larger files take longer.
 const LARGEST: usize = 60_000;
-/// Number of ticks that an accepted world must survive.
+/// Number of ticks of an accepted world.
 const TICKS: u32 = 3;
-/// Largest memory use of reading a snapshot, as a multiple of its size.
+/// Largest memory use of a snapshot, as a multiple of its size.
 const SNAPSHOT_MULTIPLE: usize = 100;
 
 #[test]
@@ -39,7 +39,7 @@ fn a_mutated_replay_is_never_another_match() {
     check_replays::<Sandbox>(&originals, FILES);
 }
 
-/// Returns the bytes of an empty world, and of each scene's world after 40 ticks unless they are more than [`LARGEST`].
+/// An empty world, and each scene's world after 40 ticks, unless it is too large.
 fn snapshots() -> Vec<Vec<u8>> {
     let mut snapshots = vec![World::default().to_bytes()];
     for scene in lockstep2d_scenes::ALL {
@@ -78,7 +78,7 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     assert!(figures.answers.len() >= 6, "{:?}", figures.answers);
 }
 
-/// In a file, a vacant slot takes only its generation; in memory, it takes as much as a whole body.
+/// A vacant slot takes its generation in a file, and as much as a body in memory.
 #[test]
 fn what_a_snapshot_takes_is_bounded_by_its_bytes() {
     let mut world = World::default();

@@ -1,4 +1,4 @@
-//! Global allocator that tracks the peak memory use of each thread.
+//! An allocator that tracks the peak memory use of each thread.
 #![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -14,7 +14,7 @@ thread_local! {
     static PEAK: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Returns the result of `work` and its peak memory use in bytes.
+/// The result of `work` and its peak memory use in bytes.
 pub(crate) fn peak_of<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = IN_USE.get();
     PEAK.set(before);
@@ -28,7 +28,7 @@ fn took(bytes: usize) {
     PEAK.set(PEAK.get().max(in_use));
 }
 
-// SAFETY: forwards to the system allocator. The default `realloc` allocates and copies, so both buffers are counted.
+// SAFETY: forwards to the system allocator. The default `realloc` counts both buffers.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         took(layout.size());

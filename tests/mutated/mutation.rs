@@ -3,21 +3,18 @@
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 
-/// Size of a checksum in a replay, in bytes.
+/// In bytes.
 const CHECKSUM: usize = 8;
-/// Size of the hash at the end of a snapshot, in bytes.
+/// In bytes.
 const HASH: usize = 16;
-/// Size of the header of a snapshot, in bytes: magic, format, semantics and length.
+/// In bytes: magic, format, semantics and length.
 const SNAPSHOT_HEADER: usize = 24;
-/// Kind byte of the trailer, the last block of a replay.
 const TRAILER: u8 = 3;
-/// Range of the chain hash in the trailer's payload.
 const CHAIN: std::ops::Range<usize> = 24..40;
-/// Boundary values of integer types and limits.
+/// Limits of types.
 const EDGES: [u64; 12] =
     [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, 0xffff_ffff, u64::MAX];
 
-/// Kind of a mutation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Mutation {
     Bits,
@@ -41,7 +38,7 @@ const ALL: [Mutation; 8] = [
     Mutation::Length,
 ];
 
-/// Applies one random mutation to a file; `others` supplies pieces to splice in.
+/// Applies a random mutation. `others` supplies pieces.
 pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> Mutation {
     let mutation = ALL[below(rng, ALL.len())];
     let length = file.len();
@@ -65,7 +62,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let other = &others[below(rng, others.len())];
             let (at, from) = (below(rng, length), below(rng, other.len()));
             if rng.below(2) == 0 {
-                // Joins the beginning of one file and the end of another.
+                // The beginning of one file and the end of another.
                 file.truncate(at);
                 file.extend_from_slice(&other[from..]);
             } else {
@@ -88,7 +85,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // Overwrites a number at the beginning of a part, where lengths are, or anywhere.
+            // At the beginning of a part, where lengths are, or anywhere.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);
@@ -104,12 +101,12 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
     mutation
 }
 
-/// Returns a number below `bound`, or 0 if `bound` is 0.
+/// 0 if `bound` is 0.
 pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
     usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
 
-/// Returns a random range of a file, often exactly one part.
+/// A random range, often exactly one part.
 fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     let places = boundaries(file);
     if rng.below(2) == 0 && places.len() > 1 {
@@ -120,7 +117,7 @@ fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     (start, (start + 1 + below(rng, 100)).min(file.len()))
 }
 
-/// Returns where the parts of a replay or a snapshot begin, and where the last part ends.
+/// Beginnings of the parts of a replay or snapshot, and the end.
 fn boundaries(file: &[u8]) -> Vec<usize> {
     let mut places = vec![0];
     if is_snapshot(file) {
@@ -148,12 +145,12 @@ fn number(file: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_le_bytes(*bytes)).ok()
 }
 
-/// Returns the offset of the checksum that follows a replay's header.
+/// Offset of the checksum after the header.
 fn replay_header(file: &[u8]) -> Option<usize> {
     Some(56 + number(file, 32)? + number(file, 36)?)
 }
 
-/// Recomputes lengths, checksums and hashes: everything that a forger can repair without running the game.
+/// Recomputes all that a forger can repair without the game.
 pub(crate) fn repair(file: &mut [u8]) {
     if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
 }

@@ -1,5 +1,4 @@
-//! Matches of a game with physics over a network in memory, in simulated time: equal states, equal replays that verify,
-//! late joins, reports of a desync, refusals.
+//! Matches of a game with physics over a network in memory, in simulated time.
 
 mod pushers;
 #[cfg(feature = "sealed")]
@@ -17,7 +16,6 @@ use lockstep2d::session::{Event, Status};
 use lockstep2d::world::BodyField;
 use pushers::{FAULT, Fault, Pushers, Setup, bot};
 
-/// The peers of a match, with the network between them.
 struct Table {
     network: Network,
     peers: Vec<Option<Peer<Pushers, Port>>>,
@@ -44,7 +42,6 @@ impl Table {
         Table { network, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
     }
 
-    /// Returns the identity and the port of the next peer.
     fn next(&self) -> (PeerIdentity, Port) {
         let number = u32::try_from(self.peers.len()).expect("valid");
         (identity(number), self.network.port(number))
@@ -73,7 +70,7 @@ impl Table {
         self.sit(peer.expect("valid"));
     }
 
-    /// Plays for some milliseconds. Removes each peer that has closed, and ends its replay.
+    /// Plays for some milliseconds. A peer that has closed is removed.
     fn play(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             let now = self.network.time() + Duration::from_millis(1);
@@ -103,7 +100,6 @@ impl Table {
         self.peers[at].as_mut().expect("valid")
     }
 
-    /// Ends the match and returns its replays.
     fn end(&mut self) -> Vec<Vec<u8>> {
         let tick = u32::try_from(self.peer(0).tick()).expect("valid");
         self.peer(0).session_mut().expect("valid").end_at(tick + 20);
@@ -137,7 +133,7 @@ fn all_have_the_same_replay_and_it_verifies() {
     }
 }
 
-/// The host's replay continues across a late join and a departure. Late joiners and spectators follow the same states.
+/// The host's replay continues across a late join and a departure.
 #[test]
 fn late_joiners_and_spectators_follow() {
     for options in modes() {
@@ -156,7 +152,7 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
-        // The spectator has lost its contact (the peer that relays the match to it), and has found another contact.
+        // The spectator has lost its contact, and has found another one.
         assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
@@ -180,7 +176,7 @@ fn late_joiners_and_spectators_follow() {
     }
 }
 
-/// Both peers continue after an outage; the guest gets its seat back and continues its replay.
+/// After an outage, the guest gets its seat back.
 #[test]
 fn an_outage_costs_no_replay() {
     let options = PeerOptions::lockstep();
@@ -249,7 +245,7 @@ fn another_setup_is_refused_with_all_differences() {
     assert_eq!(what, ["setup", "tick rate", "patience in microseconds"]);
 }
 
-/// A dedicated server has no seat, and its replay equals the replays of the players.
+/// The server's replay equals those of the players.
 #[test]
 fn a_dedicated_server_plays_no_seat() {
     let options = PeerOptions::lockstep();
@@ -277,7 +273,6 @@ fn more_inputs_than_seats_are_an_error() {
     assert!(matches!(table.peer(0).advance(&[1, 2]), Err(PeerError::InputCount { seats: 1, inputs: 2 })));
 }
 
-/// Returns the message of the error with which `Peer::host` refuses the options.
 fn refused(options: PeerOptions) -> String {
     let network = Network::new(conditions(1, 0), 3);
     let peer = Peer::<Pushers, _>::host(&Setup::default(), options, identity(0), network.port(0));
@@ -310,10 +305,10 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     table.play(3000);
     let peer = table.peer(1);
     assert_eq!((peer.status(), peer.seats()), (Some(Status::Joining), vec![]));
-    // One bit for each of 64 seats, of which the game has four.
+    // 64 seats, of which the game has four.
     assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
-    // A peer without seats passes an empty list of inputs, as a loop over its seats builds it.
+    // As a loop over no seats builds it.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
 }
 

@@ -1,4 +1,4 @@
-//! A small game for network tests: discs in a box, each pushed by the player of a seat.
+//! Discs in a box, each pushed by the player of a seat.
 
 use std::cell::Cell;
 
@@ -10,7 +10,6 @@ use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::world::{BodyField, Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Initial conditions of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Setup {
     pub(crate) players: u32,
@@ -31,7 +30,7 @@ pub(crate) struct Pushers {
     fault: Option<Fault>,
 }
 
-/// A bit that flips after a tick, whenever that tick is simulated.
+/// A bit that flips whenever this tick is simulated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fault {
     pub(crate) tick: u64,
@@ -41,11 +40,11 @@ pub(crate) struct Fault {
 }
 
 thread_local! {
-    /// Fault for the next game that this thread creates.
+    /// For the next game of this thread.
     pub(crate) static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
 }
 
-/// Input bit of a seat without a player.
+/// A seat without a player.
 pub(crate) const EMPTY: u8 = 1 << 7;
 
 impl Pushers {
@@ -99,7 +98,7 @@ impl Game for Pushers {
             };
             let push = if input & EMPTY != 0 { Vec2::ZERO } else { Vec2::new(axis(1, 2), axis(4, 8)) };
             let at = self.world.body(*disc).map_or(Vec2::ZERO, |body| body.centre_of_mass());
-            // The discs are never despawned, so the force is never refused.
+            // Discs are never despawned.
             let _ = self.world.apply_force(*disc, push, at);
         }
         self.world.step();
@@ -133,7 +132,7 @@ impl Game for Pushers {
     }
 }
 
-/// Returns a bot's input: a new direction every seven ticks.
+/// A new direction every seven ticks.
 pub(crate) fn bot(seat: u32, tick: u64) -> u8 {
     let phase = u32::try_from(tick / 7).unwrap_or(0);
     let mut rng = Rng::with_stream(u64::from(seat), u64::from(phase));

@@ -1,4 +1,4 @@
-//! A sealed match, and an attacker that reads all packets of the match and sends them again.
+//! A sealed match, and an attacker that sends all its packets again.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -10,10 +10,9 @@ use lockstep2d::session::Address;
 
 use super::pushers::{Pushers, Setup, bot};
 
-/// All packets that the peers have sent since the attacker last took them.
+/// Packets since the attacker last took them.
 type Heard = Rc<RefCell<Vec<Vec<u8>>>>;
 
-/// A port that records all packets that it sends.
 struct Tapped {
     port: Port,
     heard: Heard,
@@ -30,8 +29,7 @@ impl Transport for Tapped {
     }
 }
 
-/// Every packet of the match is sent again from another address, unchanged and changed, to a random peer. No peer
-/// answers the attacker, and the match continues undisturbed.
+/// Every packet is sent again from another address, unchanged and changed, to a random peer.
 #[test]
 fn a_sealed_match_ignores_strangers() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(20)), 1);
@@ -67,12 +65,12 @@ fn a_sealed_match_ignores_strangers() {
             attacks += 1;
             let to = Network::address(rng.below(2));
             stranger.send(&packet, &to);
-            // Every sealed packet has at least 32 bytes.
+            // A sealed packet has at least 32 bytes.
             let at = usize::try_from(rng.below(32)).expect("valid");
             packet[at] ^= 1 << rng.below(8);
             stranger.send(&packet, &to);
         }
-        // A packet that is sent back to its sender, or a second time to its receiver, gets no answer.
+        // Repeated packets get no answer.
         assert_eq!(stranger.receive(), None);
     }
     assert!(attacks > 500, "{attacks}");

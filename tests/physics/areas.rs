@@ -17,7 +17,7 @@ fn world(gravity: Fx) -> World {
     World::new(Config { gravity: Vec2::new(fx!(0), gravity), ..Config::default() }).expect("valid")
 }
 
-/// Adds a pool whose surface is at height 0, `half` m to either side of `x` and 20 m deep.
+/// The surface is at height 0, `half` m to either side of `x`; 20 m deep.
 fn pool(world: &mut World, x: Fx, half: Fx, area: Area) -> BodyId {
     let shape = ShapeDef::new(Polygon::rectangle(half, fx!(10)).expect("valid")).area(area);
     world.spawn(&BodyDef::fixed().position((x, fx!(-10))), &[shape]).expect("valid")
@@ -27,7 +27,6 @@ fn spawn(world: &mut World, shape: ShapeDef, position: (Fx, Fx)) -> BodyId {
     world.spawn(&BodyDef::dynamic().position(position), &[shape]).expect("valid")
 }
 
-/// Spawns a body that never sleeps, so that it cannot fall asleep before it is at rest.
 fn spawn_awake(world: &mut World, shape: ShapeDef, position: (Fx, Fx)) -> BodyId {
     world.spawn(&BodyDef::dynamic().position(position).never_sleeps(), &[shape]).expect("valid")
 }
@@ -59,7 +58,7 @@ fn a_box_of_half_the_density_floats_half_submerged() {
     for (density, height) in [(fx!(0.5), fx!(0)), (fx!(0.25), fx!(0.1)), (fx!(0.9), fx!(-0.16))] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
-        // The raft of 2 m by 0.4 m is flat enough to be stable.
+        // Flat enough to be stable.
         let raft = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.2)).expect("valid")).density(density);
         let raft = spawn_awake(&mut world, raft, (fx!(3), fx!(1)));
         run(&mut world, 900);
@@ -77,7 +76,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
     let rounded = Geometry::Polygon(
         Polygon::rectangle(fx!(0.9), fx!(0.2)).expect("valid").rounded(fx!(0.1)).expect("valid"),
     );
-    // Half submerged, symmetric shapes have their centres at the surface.
+    // Half submerged, a symmetric shape has its centre at the surface.
     for geometry in [disc, pill, rounded] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
@@ -85,7 +84,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
         run(&mut world, 900);
         close(at(&world, body).y, fx!(0), fx!(0.002));
     }
-    // Submerged part of a disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2.
+    // A disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2 is submerged.
     let share = fx_div(PI - PI / 3 + fx!(0.433012701892), PI).expect("valid");
     let mut world = world(fx!(-10));
     pool(&mut world, fx!(0), fx!(20), water);
@@ -139,7 +138,7 @@ fn a_falling_body_reaches_the_terminal_velocity() {
     }
 }
 
-/// A uniform acceleration without drag equals gravity, bit for bit.
+/// Without drag, a uniform acceleration equals gravity bit for bit.
 #[test]
 fn a_uniform_acceleration_is_gravity() {
     let mut falls = Vec::new();
@@ -161,7 +160,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     let mut world = world(fx!(0));
     let wind = Area::new().force((fx!(3), fx!(4)));
     let gust = ShapeDef::new(Polygon::square(fx!(100)).expect("valid")).area(wind);
-    // Directions are in the frame of the area's body.
+    // In the frame of the area's body.
     world.spawn(&BodyDef::fixed().angle(Angle::QUARTER), &[gust]).expect("valid");
     let bodies = [fx!(1), fx!(10)]
         .map(|density| spawn(&mut world, square(fx!(0.5)).density(density), (fx!(0), density)));
@@ -174,7 +173,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     }
 }
 
-/// Without drag a floating box bobs with the theoretical period and without decay, for any number of sub-steps.
+/// Without drag a floating box bobs with the theoretical period and without decay.
 #[test]
 fn bobbing_keeps_its_energy() {
     for sub_steps in [1, 2, 4, 8] {
@@ -182,7 +181,7 @@ fn bobbing_keeps_its_energy() {
         let config = Config { gravity: Vec2::new(fx!(0), fx!(-10)), solver, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         pool(&mut world, fx!(0), fx!(20), Area::fluid(fx!(1)));
-        // At rest, 0.5 m of the buoy's height of 1 m are immersed: omega^2 = g / 0.5 m.
+        // 0.5 m are immersed at rest: omega^2 = g / 0.5 m.
         let buoy = square(fx!(0.5)).density(fx!(0.5));
         let buoy = world
             .spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.2))).lock_rotation(), &[buoy])
@@ -199,19 +198,18 @@ fn bobbing_keeps_its_energy() {
             last = y;
         }
         assert!((highest[0] - highest[1]).abs() < fx!(0.0005), "{sub_steps} sub-steps: {highest:?}");
-        // 60 s of sqrt(20) / 2 pi Hz are 42.7 periods.
         assert!((42..=43).contains(&crossings), "{sub_steps} sub-steps: {crossings} periods");
     }
 }
 
-/// Balls on a circle and on two ellipses around a planet: energy and angular momentum are conserved for a minute.
+/// On a circle and two ellipses, energy and angular momentum are conserved for a minute.
 #[test]
 fn orbits_close() {
     let mut world = world(fx!(0));
     let planet = Area::new().attraction(fx!(10), fx!(2), Falloff::InverseSquare);
     let planet = ShapeDef::new(Geometry::circle(fx!(50)).expect("valid")).area(planet);
     world.spawn(&BodyDef::fixed(), &[planet]).expect("valid");
-    // The planet has g R^2 = 40 m^3/s^2.
+    // g R^2 = 40 m^3/s^2.
     let circular = sqrt(fx!(40) / 10).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
     for speed in [circular, circular * 5 / 4, circular * 3 / 4] {
@@ -237,7 +235,7 @@ fn orbits_close() {
     }
 }
 
-/// Inside a planet the pull is proportional to the distance from the centre: an oscillator with `omega^2 = g / R`.
+/// Inside a planet the pull is proportional to the distance: `omega^2 = g / R`.
 #[test]
 fn a_tunnel_through_a_planet_is_an_oscillator() {
     let mut world = world(fx!(0));
@@ -246,12 +244,12 @@ fn a_tunnel_through_a_planet_is_an_oscillator() {
     world.spawn(&BodyDef::fixed(), &[planet]).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
     let ball = spawn(&mut world, ball, (fx!(8), fx!(0)));
-    // A period is 2 pi s, 377 ticks; after half a period the ball is at the other end.
+    // Half of a period of 2 pi s, 377 ticks.
     run(&mut world, 188);
     close(at(&world, ball).x, fx!(-8), fx!(0.01));
 }
 
-/// The sea of a planet carries boats on all sides: buoyancy acts against the field of all areas.
+/// Buoyancy acts against the field of all areas.
 #[test]
 fn a_planet_may_have_a_sea() {
     let mut world = world(fx!(0));
@@ -265,7 +263,7 @@ fn a_planet_may_have_a_sea() {
         .map(|(x, y)| spawn(&mut world, ball, (Fx::from_num(x), Fx::from_num(y))));
     run(&mut world, 900);
     for ball in balls {
-        // The sea is a polygon of 32 corners.
+        // A polygon of 32 corners.
         close(at(&world, ball).length(), fx!(20), fx!(0.07));
     }
 }
@@ -292,7 +290,7 @@ fn what_floats_sleeps_and_wakes() {
     run(&mut world, 600);
     let asleep = |world: &World| bodies.map(|body| world.body(body).expect("valid").is_asleep());
     assert_eq!(asleep(&world), [true, true]);
-    // An area on a moving body wakes the bodies inside it, and no others.
+    // An area on a moving body wakes the bodies inside.
     let fan = Area::new().force((fx!(0), fx!(2)));
     let fan = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).area(fan);
     let carrier = BodyDef::kinematic().position((fx!(-6), fx!(0))).velocity((fx!(2), fx!(0)));
@@ -303,21 +301,20 @@ fn what_floats_sleeps_and_wakes() {
     assert!(at(&world, carrier).x > fx!(8));
     run(&mut world, 400);
     assert_eq!(asleep(&world), [true, true]);
-    // A change of the sea's settings wakes all bodies in it.
+    // A change of the sea wakes the bodies in it.
     let shape = world.shapes_of(sea)[0];
     let denser = world.shape(shape).expect("valid").def().area(water.density(fx!(2)));
     world.set_shape(shape, &denser).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
     run(&mut world, 600);
     assert_eq!(asleep(&world), [true, true]);
-    // The box falls asleep after half a second below the sleep speed, so its height may be off by the distance that it
-    // moves in half a second at that speed.
+    // Half a second below the sleep speed may leave an error of half a second at that speed.
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
 }
 
-/// A wind that a command sets acts until it is changed. Setting the same wind again wakes no body.
+/// Setting the same wind again wakes no body.
 #[test]
 fn a_command_sets_the_wind() {
     let mut world = world(fx!(0));
@@ -340,7 +337,7 @@ fn a_command_sets_the_wind() {
     assert!(!world.body(body).expect("valid").is_asleep());
 }
 
-/// The area of a moving dynamic body wakes a sleeping body when it reaches that body.
+/// The area of a moving body wakes a sleeping one when it reaches it.
 #[test]
 fn a_moving_magnet_wakes_a_box_that_it_reaches() {
     let mut world = world(fx!(-10));
@@ -361,7 +358,7 @@ fn a_moving_magnet_wakes_a_box_that_it_reaches() {
             woken_at = Some(at(&world, magnet).x);
         }
     }
-    // The circular area, 3 m in radius, reaches the side of the box at x = -0.3 when the magnet is at x = -3.3.
+    // The area of 3 m reaches the box at x = -0.3 when the magnet is at x = -3.3.
     close(woken_at.expect("it passes"), fx!(-3.3), fx!(0.1));
 }
 
@@ -390,7 +387,7 @@ fn areas_without_an_inside_or_out_of_range_are_refused() {
         assert_eq!((what, value), expected);
         assert!(!(min..=max).contains(&value), "{error}");
     }
-    // The speed that an area gives to a body does not exceed the speed limit.
+    // An area does not exceed the speed limit.
     let strongest = Area::new().force((fx!(1048576), fx!(0))).acceleration((fx!(10000), fx!(0)));
     world.add_shape(body, &square(fx!(50)).area(strongest)).expect("valid");
     let leaf = spawn(&mut world, square(fx!(0.3)).density(fx!(0.001)), (fx!(-40), fx!(0)));

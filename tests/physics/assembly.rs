@@ -1,7 +1,7 @@
 //! Random assemblies: bodies without shapes, joined in a star, a tree, a chain, a loop, a mesh or a grid.
 //!
-//! All joints are satisfied at the start, so that no energy is stored in the joints themselves. Masses are within a
-//! factor of 100 of each other, and arms within 16 radii of gyration.
+//! Joints are satisfied at the start and store no energy. Masses are within a factor of 100, and arms within 16 radii
+//! of gyration.
 #![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 #![allow(dead_code, reason = "all starts and kinds are defined, the tests use those that gain no energy")]
@@ -14,24 +14,18 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::{Config, World};
 
-/// Topology of the joints of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// A hub with 3 to 8 limbs.
     Star,
-    /// Each body is joined to an earlier one.
     Tree,
-    /// Each body is joined to the one before it.
     Chain,
-    /// A chain whose ends are joined.
     Loop,
-    /// A tree with up to three additional joints.
+    /// A tree with additional joints.
     Mesh,
-    /// Rows and columns.
     Grid,
 }
 
-/// Kinds of joints of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mix {
     Weld,
@@ -41,30 +35,26 @@ pub(crate) enum Mix {
     Wheel,
     Rod,
     Friction,
-    /// Each joint is of a random kind among [`MIXES`].
+    /// A random kind among [`MIXES`] for each joint.
     Every,
-    /// Springs between two points and between two angles.
+    /// Springs between points and between angles.
     MotorSpring,
-    /// Springs between two anchors that only pull, only push, or have a largest force.
+    /// Springs that only pull, only push, or have a largest force.
     LimitedSpring,
 }
 
-/// Motion of the assembly at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
-    /// One body is hit.
     Hit,
-    /// All bodies turn about one point as one rigid body.
+    /// As one rigid body.
     Spin,
-    /// Every body has its own velocity.
     Scatter,
-    /// At rest, hanging from a fixed body under gravity.
+    /// At rest, under gravity.
     Hang,
 }
 
 pub(crate) const SHAPES: [Shape; 6] =
     [Shape::Star, Shape::Tree, Shape::Chain, Shape::Loop, Shape::Mesh, Shape::Grid];
-/// The mixes among which [`Mix::Every`] chooses.
 pub(crate) const MIXES: [Mix; 7] =
     [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
@@ -98,7 +88,7 @@ fn length(v: Vec2<Fx>) -> Fx {
 }
 
 impl Case {
-    /// Returns the number of bodies, and the pairs of indices of joined bodies.
+    /// Number of bodies, and pairs of joined ones.
     fn links(&self, rng: &mut Rng) -> (usize, Vec<(usize, usize)>) {
         let few = |rng: &mut Rng, low: u32, high: u32| (low + rng.below(high - low + 1)) as usize;
         match self.shape {
@@ -177,7 +167,7 @@ impl Case {
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
-                        // The first link to the row below spans as many indices as a row has bodies.
+                        // The first link down spans a row.
                         let w = links.iter().find(|(a, b)| b - a > 1).map_or(2, |(a, b)| b - a);
                         let w = if links.contains(&(0, 2)) && w == 2 { 2 } else { w };
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))
@@ -192,13 +182,12 @@ impl Case {
     }
 
     fn joint(&self, rng: &mut Rng, a: BodyId, b: BodyId, [pa, pb]: [&Plan; 2]) -> JointDef {
-        // The anchor lies on or near the line between the centres.
+        // On or near the line between the centres.
         let part = rng.range(fx!(0.1), fx!(0.9));
         let between = pb.place - pa.place;
         let aside = if rng.chance(1, 3) { fx!(0.5) } else { fx!(0) };
         let aside = Vec2::new(rng.range(-aside, aside), rng.range(-aside, aside));
         let mut anchor = pa.place + Vec2::new(fx_mul(between.x, part), fx_mul(between.y, part)) + aside;
-        // No arm is longer than 16 radii of gyration.
         for plan in [pa, pb] {
             let arm = anchor - plan.place;
             let most = plan.gyration * 16;
@@ -326,15 +315,13 @@ impl Scaled for Vec2<Fx> {
     }
 }
 
-/// Measured result of an assembly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
-    /// Largest gain of energy since the start, as a share of the energy at the start, or of [`Assembly::scale`] for
-    /// [`Start::Hang`].
+    /// Largest gain of energy, as a share of the energy at the start, or of [`Assembly::scale`] for [`Start::Hang`].
     pub(crate) gain: f64,
     pub(crate) faults: u64,
     pub(crate) gap: f64,
-    /// Change of energy from the start to the end, as a share of the energy to which `gain` refers.
+    /// Change of energy at the end, like `gain`.
     pub(crate) left: f64,
 }
 

@@ -1,11 +1,11 @@
-//! Capsules come to rest, pile up, collide and roll as theory predicts.
+//! Capsules rest, pile up, collide and roll as theory predicts.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::World;
 
-/// A capsule along the x axis whose round ends have their centres at (±half, 0).
+/// Along the x axis, with round ends about (±half, 0).
 fn pill(half: Fx, radius: Fx) -> ShapeDef {
     let end = Vec2::new(half, fx!(0));
     ShapeDef::new(Geometry::capsule(-end, end, radius).expect("valid"))
@@ -25,7 +25,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
-    // Sleeping bodies have no contacts, so the last contacts before sleep are checked.
+    // Sleeping bodies have no contacts.
     let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
@@ -39,8 +39,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s, so that one of the
-/// six heaps may have such bodies.
+/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
     let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {
@@ -54,7 +53,7 @@ fn capsules_pile_up_on_boxes_circles_and_segments() {
     assert!(restless <= 1 && speeds.iter().all(|&speed| speed < fx!(0.5)), "{speeds:?} m/s");
 }
 
-/// Returns a world of 40 bodies that have had 20 seconds to come to rest between two walls.
+/// 40 bodies between two walls, after 20 seconds.
 fn heap(height: Fx) -> World {
     let mut world = World::default();
     let ends = [Vec2::new(fx!(-20), fx!(0)), Vec2::new(fx!(20), fx!(0))];
@@ -78,7 +77,7 @@ fn heap(height: Fx) -> World {
     world
 }
 
-/// Collinear capsules collide at their round ends, without a common face: 1D elastic collision of equal masses.
+/// An elastic collision of equal masses in line, without a common face.
 #[test]
 fn capsules_in_line_exchange_velocities() {
     let mut world =
@@ -95,7 +94,7 @@ fn capsules_in_line_exchange_velocities() {
     assert!(target.distance(Vec2::new(fx!(4), fx!(0))) < fx!(0.001), "{target:?}");
 }
 
-/// A nearly upright capsule rests on one point, falls over, and rolls.
+/// Rests on one point, falls over, and rolls.
 #[test]
 fn a_capsule_that_leans_falls_over_to_that_side() {
     let mut world = World::default();

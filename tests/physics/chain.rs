@@ -1,4 +1,4 @@
-//! Shapes that slide or roll over a chain at 1 to 20 m/s have no ghost collisions at its vertices. Chains are solid.
+//! No ghost collisions at the vertices of a chain at 1 to 20 m/s. Chains are solid.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Movers of different shapes. Their lowest points are 0.5 m below their centres, except for the small ball: 0.1 m.
+/// Lowest points are 0.5 m below the centres, 0.1 m for the small ball.
 fn movers() -> [(&'static str, ShapeDef); 5] {
     let square =
         |half, radius| Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid");
@@ -25,7 +25,7 @@ fn height(name: &str) -> Fx {
     if name == "small ball" { fx!(0.1) } else { fx!(0.5) }
 }
 
-/// Returns 1001 points from right to left at height 0, 10 to 50 cm apart.
+/// 1001 points from right to left at height 0, 10 to 50 cm apart.
 fn flat() -> Vec<Vec2<Fx>> {
     let mut rng = Rng::new(1);
     let mut x = fx!(290);
@@ -36,7 +36,7 @@ fn flat() -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// Returns the deepest overlap with a link in metres.
+/// In metres.
 fn deepest_in_chain(world: &World) -> Fx {
     let is_link = |id| matches!(world.shape(id).map(|shape| shape.geometry()), Some(Geometry::Link { .. }));
     let contacts = world.contacts().filter(|contact| is_link(contact.shape_a) || is_link(contact.shape_b));
@@ -50,7 +50,7 @@ fn launch(world: &mut World, shape: ShapeDef, place: Vec2<Fx>, velocity: Vec2<Fx
     world.spawn(&def, &[shape]).expect("valid")
 }
 
-/// The sweep has 100 cases. Its sample has 16 of them, in which every side, mover, friction and speed occurs.
+/// The sample of 16 of 100 cases has every side, mover, friction and speed.
 #[test]
 fn everything_slides_over_a_flat_chain_of_1000_links() {
     let points = flat();
@@ -78,14 +78,14 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
         assert!(fastest < fx!(0.05), "{name} at {speed} m/s: {fastest} m/s up or down");
         let travelled = world.body(body).expect("there").position().x;
         let free = speed * 800 / 60;
-        // Rounded corners that meet the vertices change the distance slightly, by 0.03 %.
+        // Rounded corners that meet the vertices change the distance by 0.03 %.
         assert!(friction > 0 || (travelled - free).abs() < fx!(0.03), "{name}: {travelled} m");
         assert_eq!(world.faults(), 0);
     });
 }
 
-/// Returns an arc of radius 100 m and length 200 m in 1000 links: a valley around (0, 100), or a hill around (0, -100).
-/// The points run from right to left, so the upper side is solid.
+/// An arc of radius 100 m in 1000 links of 0.2 m: a valley around (0, 100), or a hill around (0, -100). The upper side
+/// is solid.
 fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     let points = (0..=1000i32).map(|i| {
         let turn = Angle::from_radians(Fx::from_num(500 - i) / 500);
@@ -96,8 +96,7 @@ fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// Without friction, the radial velocity is zero and the path follows the arc. A chord of 0.2 m is 0.05 mm below its
-/// arc.
+/// Without friction, the radial velocity is zero. A chord of 0.2 m is 0.05 mm below its arc.
 #[test]
 fn everything_follows_a_gentle_arc() {
     for (hill, speeds) in [(false, [fx!(1), fx!(5), fx!(20)]), (true, [fx!(1), fx!(5), fx!(10)])] {
@@ -133,7 +132,7 @@ fn everything_follows_a_gentle_arc() {
     }
 }
 
-/// On rough ground with slopes of every angle, no shape gains energy or gets through.
+/// On slopes of every angle, no shape gains energy or gets through.
 #[test]
 fn a_rough_closed_chain_keeps_everything_inside() {
     let mut rng = Rng::new(5);
@@ -164,7 +163,6 @@ fn a_rough_closed_chain_keeps_everything_inside() {
     }
 }
 
-/// A one-sided chain is passable from below.
 #[test]
 fn a_one_sided_chain_lets_through_from_the_other_side() {
     let points = [Vec2::new(fx!(5), fx!(0)), Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(-5), fx!(0))];
@@ -183,7 +181,7 @@ fn a_one_sided_chain_lets_through_from_the_other_side() {
     }
 }
 
-/// Corners of every kind are solid: a pit with vertical walls and a sharp ridge in the middle.
+/// A pit with vertical walls and a sharp ridge.
 #[test]
 fn corners_are_solid() {
     let at = |x: i32, y: i32| Vec2::new(Fx::from(x), Fx::from(y));
@@ -218,8 +216,8 @@ fn corners_are_solid() {
     assert!(deep <= 1, "{deep} of 150 are more than 15 cm deep");
 }
 
-/// A neighbour's line affects the ghost-collision filter only up to its far end. A plank over a crest, with its end
-/// across the next valley, rests on the valley's far side, and a ray that clears the crest hits the far side.
+/// A neighbour's line affects the ghost-collision filter up to its far end. A plank over a crest rests on the far side
+/// of the next valley, and a ray hits that side.
 #[test]
 fn what_reaches_over_a_crest_meets_the_far_side() {
     let points = [(20, -10), (4, 1), (0, -1), (-10, 1), (-30, 1)]
@@ -240,7 +238,7 @@ fn what_reaches_over_a_crest_meets_the_far_side() {
         for _ in 0..180 {
             world.step();
             let tip = world.body(plank).expect("there").transform().apply(Vec2::new(fx!(-12), fx!(-0.1)));
-            // The far side runs from (0, -1) to (-10, 1).
+            // From (0, -1) to (-10, 1).
             let ground = fx!(-1) - tip.x / 5;
             assert!(tip.y > ground - fx!(0.05), "the tip is at {tip:?}");
         }

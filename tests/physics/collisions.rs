@@ -1,4 +1,4 @@
-//! Collisions of two bodies: impulses are equal and opposite, so momentum is conserved.
+//! Collisions of two bodies.
 
 use lockstep2d::body::BodyKind;
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn momentum(world: &World) -> Vec2<Fx> {
     world.bodies().fold(Vec2::ZERO, |sum, (_, body)| sum + body.velocity().scale(body.mass()))
 }
 
-/// Returns the angular momentum about the origin: `sum m r x v + I w`.
+/// `sum m r x v + I w` about the origin.
 fn angular_momentum(world: &World) -> Fx {
     world.bodies().fold(Fx::ZERO, |sum, (_, body)| {
         let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -36,8 +36,7 @@ fn momentum_stays_in_every_tick_of_a_collision() {
     }
 }
 
-/// Lever arms are constant within a tick, so angular momentum may deviate by the impulse times the relative motion of
-/// the bodies in a tick: `|P| |v_rel| dt`.
+/// Lever arms are constant within a tick, so angular momentum may deviate by `|P| |v_rel| dt`.
 #[test]
 fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     let mut game = open("oblique");
@@ -53,7 +52,7 @@ fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     assert!(error <= bound, "angular momentum off by {error}, more than {bound}");
 }
 
-/// An elastic collision of 1 kg at 4 m/s with 3 kg at -2 m/s: `v1' = v1 - 2 m2 / (m1 + m2) (v1 - v2) = -5`, `v2' = 1`.
+/// 1 kg at 4 m/s hits 3 kg at -2 m/s: `v1' = v1 - 2 m2 / (m1 + m2) (v1 - v2) = -5`, `v2' = 1`.
 #[test]
 fn an_elastic_collision_exchanges_velocities_as_the_textbook_says() {
     let mut game = open("head_on");
@@ -68,7 +67,6 @@ fn an_elastic_collision_exchanges_velocities_as_the_textbook_says() {
     assert!(gained.abs() < before / 10_000, "energy changed from {before} J by {gained} J");
 }
 
-/// Balls that start inside a block leave it by the nearest side.
 #[test]
 fn a_ball_inside_a_block_is_pushed_out_not_through() {
     let mut game = open("ball_in_box");

@@ -1,4 +1,4 @@
-//! Columns, plates on discs, arches and a house of cards stay standing, and fall asleep.
+//! Columns, plates on discs, arches and a house of cards stand and fall asleep.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -18,8 +18,8 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Simulates until all bodies sleep, for at most a minute. Expects that they sleep in the end, and that no body has
-/// left its place by more than `sideways` or has sunk by more than `sink`.
+/// Simulates until all bodies sleep, for at most a minute. No body may leave its place by more than `sideways` or sink
+/// by more than `sink`.
 fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     let places: Vec<_> = world.bodies().map(|(id, body)| (id, body.position())).collect();
     for _ in 0..world.config().tick_rate * 60 {
@@ -36,8 +36,8 @@ fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     assert_eq!((world.awake_body_count(), world.faults()), (0, 0), "{name}");
 }
 
-/// Boxes of 1 m exactly above each other, and with offsets of up to a centimetre. Soft contacts give way by up to 0.72
-/// mm for each box above, so that the top of `n` boxes sinks by up to `n^2 / 2` times 0.72 mm.
+/// Exactly above each other, or up to a centimetre aside. Contacts give way by up to 0.72 mm for each box above, so
+/// that the top of `n` boxes sinks by up to `n^2 / 2` times that.
 #[test]
 fn a_column_of_a_hundred_boxes_stands() {
     let counts = [10, 40, 60, 80, 100].into_iter();
@@ -57,8 +57,7 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
-/// Without their radii, the outlines of rounded boxes do not touch. Each tick therefore chooses the reference face
-/// anew.
+/// Without their radii the outlines do not touch, so that each tick chooses the reference face anew.
 #[test]
 fn a_column_of_a_hundred_rounded_boxes_stands() {
     let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();
@@ -98,7 +97,7 @@ fn plates_on_discs_stand() {
     }
 }
 
-/// E. Catto's house of cards. The cards are 40 cm long and 2 mm thick, and lean at 25 degrees.
+/// E. Catto's house of cards: 40 cm by 2 mm, at 25 degrees.
 #[test]
 fn a_house_of_cards_stands() {
     for rate in [60, 120] {
@@ -125,8 +124,7 @@ fn a_house_of_cards_stands() {
     }
 }
 
-/// Spawns a semicircular arch of wedge-shaped stones, with a mean radius of 4 m. `thickness` is relative to this
-/// radius.
+/// A semicircular arch of wedges, with a mean radius of 4 m, to which `thickness` is relative.
 fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     for stone in 0..stones {
         let place = |number: u32, radius: Fx| {
@@ -141,8 +139,8 @@ fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     }
 }
 
-/// A semicircular arch stands if its thickness is more than 0.1075 of its mean radius and its stones do not slide
-/// (M. Milankovitch, "Theorie der Druckkurven", 1907).
+/// An arch stands if its thickness is more than 0.1075 of its mean radius and stones do not slide (M. Milankovitch,
+/// "Theorie der Druckkurven", 1907).
 #[test]
 fn an_arch_stands_if_it_is_thick_enough() {
     let thick = [7u32, 9, 15].map(|stones| [fx!(0.13), fx!(0.2), fx!(0.3)].map(|part| (stones, part)));

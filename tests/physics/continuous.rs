@@ -1,11 +1,11 @@
-//! Continuous collision: fast bodies do not tunnel through thin walls.
+//! Fast bodies do not tunnel through thin walls.
 
 use lockstep2d::body::{BodyDef, Continuous, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
 
-/// Returns a shape 5 cm in size.
+/// 5 cm in size.
 fn small(kind: u32) -> ShapeDef {
     let geometry = match kind {
         0 => Geometry::circle(fx!(0.025)),
@@ -15,7 +15,7 @@ fn small(kind: u32) -> ShapeDef {
     ShapeDef::new(geometry.expect("valid"))
 }
 
-/// Spawns a wall 1 cm thick through the origin, rotated by an angle, and returns its normal.
+/// A wall of 1 cm through the origin. Returns its normal.
 fn wall(world: &mut World, angle: Angle) -> Vec2<Fx> {
     let wall = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(0.005)).expect("valid"));
     world.spawn(&BodyDef::fixed().angle(angle), &[wall]).expect("valid");
@@ -60,7 +60,7 @@ fn a_thin_rod_that_spins_does_not_pass_a_wall() {
         let mut world = weightless();
         let normal = wall(&mut world, Angle::ZERO);
         let rod = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.01)).expect("valid"));
-        // The rod starts above the wall and rotates into it.
+        // The rod rotates into the wall from above.
         let tilt = rng.range(fx!(0.05), fx!(1.5));
         let height = fx_mul(fx!(1.02), Angle::from_radians(tilt).sin().into()) + fx!(0.03);
         let spin = if rng.chance(1, 2) { fx!(50) } else { fx!(-50) };
@@ -110,7 +110,7 @@ fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
     }
 }
 
-/// Returns how many of 300 balls of 6 cm pass through a blade of 2 cm that turns by up to half a radian in a tick.
+/// Counts, of 300 balls of 6 cm, those that pass a blade of 2 cm that turns by up to half a radian in a tick.
 fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
     let mut rng = Rng::new(47);
     let mut passed = 0;
@@ -136,7 +136,7 @@ fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
             let turned = fx_mul(spin, fx!(0.0166666));
             world.step();
             let now = across(&world);
-            // The blade may have turned far enough to meet the ball with its other half, from the other side.
+            // The blade may have met the ball with its other half, from the other side.
             let is_along = now.x.abs() < fx!(1.9) && last.x.abs() < fx!(1.9);
             let same_half = (now.x > 0) == (last.x > 0) && turned < fx!(0.6);
             passed += u32::from(far && is_along && same_half && (now.y > 0) != (last.y > 0));
@@ -154,8 +154,7 @@ fn balls_that_see_kinematic_bodies_do_not_pass_a_blade() {
     assert_eq!(seeing, 0, "{blind} pass without");
 }
 
-/// The sweep against kinematic bodies does not hold back a body that rides on a fast platform or a turntable: positions
-/// are equal bit for bit with and without this sweep.
+/// The sweep against kinematic bodies does not change the path of a body that rides on a fast platform or turntable.
 #[test]
 fn what_a_kinematic_body_carries_is_not_held_back() {
     let mut hashes = Vec::new();
@@ -171,7 +170,7 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
             let body = BodyDef::dynamic().position(at).velocity((fx!(40), fx!(10))).continuous(continuous);
             bodies.push(world.spawn(&body, &[square]).expect("valid"));
         }
-        // A tray that turns by 6 rad/s about a distant point carries a box at 24 m/s.
+        // 6 rad/s about a distant point carry a box at 24 m/s.
         let tray = ShapeDef::new(Polygon::rectangle(fx!(0.6), fx!(0.05)).expect("valid"));
         let tray = tray.offset((fx!(0), fx!(-4)));
         let arm = BodyDef::kinematic().position((fx!(0), fx!(100))).angular_velocity(fx!(6));
@@ -191,8 +190,8 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
     assert_eq!(hashes[0], hashes[1]);
 }
 
-/// A drum as fast as the washer's, with thin walls: sweeping against the drum does not press the boxes in it together.
-/// The motion is chaotic, so the means of several starts are compared.
+/// A drum as fast as the washer's: sweeping does not press the boxes together. The motion is chaotic, so means of
+/// several starts are compared.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     const STARTS: i32 = 8;

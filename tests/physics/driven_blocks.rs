@@ -1,4 +1,4 @@
-//! Motors of joints that are solved in blocks: all joints of a block are solved together as one system of equations.
+//! Motors of joints that are solved together in one block.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -6,8 +6,8 @@ use lockstep2d::math::Fx;
 use lockstep2d::solver::{Distance, JointDef, Revolute};
 use lockstep2d::world::{Config, World};
 
-/// A boom of 5 m with 50 kg on a hinge at its end, held up by a strut whose motor may push with 100 kN. The strut
-/// lengthens at the speed of its motor. If motors were solved before the block, the strut would sink by 0.4 m.
+/// A boom of 5 m with 50 kg at its end, held by a strut whose motor may push with 100 kN. If motors were solved before
+/// the block, the strut would sink by 0.4 m.
 #[test]
 fn a_strut_lifts_a_loaded_boom() {
     let mut world = World::new(Config::default()).expect("valid");

@@ -1,4 +1,4 @@
-//! Free fall is semi-implicit Euler, `v' = v + g h`, `x' = x + h v'`, bit for bit.
+//! Free fall is semi-implicit Euler, bit for bit: `v' = v + g h`, `x' = x + h v'`.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -11,14 +11,13 @@ fn only_body(world: &World) -> BodyId {
     world.bodies().next().expect("a body").0
 }
 
-/// `g h` and every `v h` are rounded to nearest once, in the number formats of the kernel; all other operations are
-/// exact.
+/// `g h` and every `v h` are rounded to nearest once.
 #[test]
 fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
     let body = only_body(game.world());
     let step_of = |v: Speed| {
-        // The displacement is v / 240. `Shift` has 5 more fraction bits than `Speed`.
+        // v / 240. `Shift` has 5 more fraction bits than `Speed`.
         let bits = div_round(i128::from(v.to_bits()) << 5, 240);
         Shift::from_bits(bits.try_into().expect("a small step"))
     };
@@ -35,8 +34,7 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     });
 }
 
-/// The closed form of the recurrence is `x_n = g h^2 n (n + 1) / 2`. Rounding errors are less than 2 mm in 10 s and 500
-/// m.
+/// `x_n = g h^2 n (n + 1) / 2`. Rounding errors are less than 2 mm in 10 s and 500 m.
 #[test]
 fn ten_seconds_are_within_2_mm_of_the_closed_form() {
     let mut game = open("free_fall");
@@ -48,7 +46,6 @@ fn ten_seconds_are_within_2_mm_of_the_closed_form() {
     assert!((y - expected).abs() < fx!(0.002), "{y} m, expected {expected} m");
 }
 
-/// Without gravity, velocity is constant and distance is speed times time.
 #[test]
 fn a_thrown_body_keeps_its_velocity() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -67,13 +64,13 @@ fn a_thrown_body_keeps_its_velocity() {
         "error of {distance} m after 60 s and 300 m, expected at most 14400 roundings of 3.7 nm"
     );
     let turned = body.angle().to_radians();
-    // 60 rad are 10 turns minus 2.8319 rad. Each of the 14400 sub-steps has an error of at most 3.7 nm at the radius of
-    // gyration of 0.35 m, which is 1.05e-8 rad. The sum of these errors is at most 1.5e-4 rad.
+    // 60 rad are 10 turns minus 2.8319 rad. Each of 14400 sub-steps has an error of at most 3.7 nm at 0.35 m, 1.05e-8
+    // rad, in sum 1.5e-4 rad.
     assert!((turned - fx!(-2.831853072)).abs() < fx!(0.0002), "{turned} rad");
 }
 
-/// This is the reason for semi-implicit Euler: explicit Euler multiplies the energy of a ball on a spring of 1 rad/s by
-/// `(1 + h^2)` in every step, and semi-implicit Euler conserves it. The test simulates 100 s.
+/// Explicit Euler multiplies the energy of a ball on a spring of 1 rad/s by `(1 + h^2)` in every step. Semi-implicit
+/// Euler conserves it.
 #[test]
 fn explicit_euler_gains_energy_and_semi_implicit_does_not() {
     let h = fx!(1 / 60);

@@ -55,7 +55,7 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-/// Drives pairs of wheels, side by side or one inside the other, against a brake for a minute.
+/// Pairs of wheels against a brake for a minute.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
@@ -72,7 +72,7 @@ fn the_ratio_is_kept_under_load() {
         let axle_a = hinge(&mut world, ground, a, Revolute::new().motor(fx!(9), fx!(400)));
         let axle_b = hinge(&mut world, ground, b, Revolute::new().motor(fx!(0), fx!(20)));
         let gear = fitted(&mut world, a, b, Gear::new(teeth[0], teeth[1]));
-        // Largest errors while the wheels spin up, and afterwards.
+        // While the wheels spin up, and afterwards.
         let mut worst = [fx!(0); 2];
         for tick in 0..3600 {
             world.step();
@@ -80,8 +80,8 @@ fn the_ratio_is_kept_under_load() {
             *worst = (*worst).max(world.joint_error(gear).expect("valid"));
         }
         run(&mut world, 0);
-        // Under an acceleration a, gears yield by a / (2 pi 60 Hz)^2, as all joints do: 4 mm where the brake holds a
-        // wheel of 0.3 kg. Without a pitch point the error is in radians, where 2 pi are one tooth.
+        // Gears yield by a / (2 pi 60 Hz)^2 under an acceleration a: 4 mm where the brake holds a wheel of 0.3 kg.
+        // Without a pitch point the error is in radians, 2 pi for a tooth.
         let unit = if teeth[0] + teeth[1] == 0 { fx!(10) } else { fx!(1) };
         let most = [fx_mul(fx!(0.008), unit), fx_mul(fx!(0.006), unit)];
         assert!(worst[0] < most[0] && worst[1] < most[1], "{teeth:?}: the teeth are {worst:?} m apart");
@@ -89,7 +89,7 @@ fn the_ratio_is_kept_under_load() {
         let turned = [axle_a, axle_b].map(|axle| world.joint_angle(axle).expect("valid"));
         let apart = turned[0] * i64::from(teeth[0]) + turned[1] * i64::from(teeth[1]);
         assert!(turned[0] > fx!(500));
-        // In `apart`, 2 pi are one tooth: a skipped tooth would change it by 2 pi.
+        // A skipped tooth would change `apart` by 2 pi.
         close(apart, fx!(0), fx!(1));
     }
 }
@@ -106,7 +106,7 @@ fn torques_are_in_the_ratio_of_the_teeth() {
         world.apply_torque(a, fx!(6)).expect("valid");
         world.step();
     }
-    // The torque of 6 N m on A is 12 N m on B, which the brake holds. The force at the pitch point is 6 N m / 1 m.
+    // 6 N m on A are 12 N m on B, which the brake holds. The force at the pitch point is 6 N m / 1 m.
     let (_, torque) = world.joint_part_force(brake, JointPart::Motor).expect("valid");
     close(torque, fx!(12), fx!(0.02));
     let (force, torque) = world.joint_force(gear).expect("valid");
@@ -127,7 +127,7 @@ fn a_wheel_accelerates_with_the_inertia_of_both() {
         world.apply_torque(a, fx!(5)).expect("valid");
         world.step();
     }
-    // A disc with a density of 1 has the inertia I = pi r^4 / 2.
+    // I = pi r^4 / 2 for a density of 1.
     let inertia = |r: Fx| fx_mul(PI, fx_mul(fx_mul(r, r), fx_mul(r, r))) / 2;
     let both = inertia(fx!(0.5)) + inertia(fx!(1.5)) / 9;
     let expected = fx_div(fx!(5), both).expect("valid");
@@ -135,7 +135,7 @@ fn a_wheel_accelerates_with_the_inertia_of_both() {
     close(omega(&world, b), -expected / 3, expected / 500);
 }
 
-/// Wheels in gear that nothing drives conserve their energy for a minute.
+/// Energy is conserved for a minute.
 #[test]
 fn a_free_train_keeps_its_energy() {
     let mut world = world(fx!(0));
@@ -174,7 +174,7 @@ fn a_planet_turns_as_its_arm_takes_it_around_the_sun() {
     close(omega(&world, planet), fx!(3), fx!(0.01));
 }
 
-/// Two wheels in gear on a bar in free space conserve momentum and angular momentum.
+/// A bar with two wheels in free space.
 #[test]
 fn free_wheels_on_a_bar_keep_their_momentum() {
     let mut rng = Rng::new(3);
@@ -213,7 +213,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     let ground = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     let pinion = wheel(&mut world, fx!(0.5), fx!(0));
     let crank = hinge(&mut world, ground, pinion, Revolute::new().motor(fx!(-2), fx!(300)));
-    // The rack slides vertically and hangs to the right of the wheel.
+    // To the right of the wheel.
     let bar = ShapeDef::new(Polygon::rectangle(fx!(0.1), fx!(3)).expect("valid"));
     let rack = BodyDef::dynamic().position((fx!(0.5), fx!(0))).never_sleeps();
     let rack = world.spawn(&rack, &[bar]).expect("valid");
@@ -221,7 +221,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
         .joint_along(ground, rack, Prismatic::new(), (fx!(0.5), fx!(0)), (fx!(0), fx!(1)))
         .expect("valid");
     world.add_joint(&slide).expect("valid");
-    // The axis points up. The wheel is to the left of the rack, and touches it with its right side.
+    // The axis points up, to the right of the wheel.
     let def = JointDef::new(pinion, rack, Rack::new(fx!(0.5))).angle_b(Angle::QUARTER);
     let def = world.fit_joint(&def).expect("valid");
     let joint = world.add_joint(&def).expect("valid");
@@ -236,7 +236,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     assert!(turned < fx!(-9));
     // The right side of a wheel that turns clockwise goes down.
     close(at(&world, rack).y, turned / 2, fx!(0.005));
-    // The motor lowers 1.2 kg on a lever of half a metre.
+    // 1.2 kg on a lever of half a metre.
     let (_, torque) = world.joint_part_force(crank, JointPart::Motor).expect("valid");
     close(torque, fx!(6), fx!(0.05));
 }
@@ -259,7 +259,7 @@ fn a_wheel_rolls_along_a_rack_that_is_fixed() {
     close(crate::energy(&world), start, start / 200);
 }
 
-/// Spawns two weights that hang from a rope, and returns them and the rope.
+/// Two weights on a rope.
 fn atwood(world: &mut World, masses: [Fx; 2], ratio: Fx) -> ([BodyId; 2], JointId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.3)).expect("valid"));
     let weights = [(fx!(-2), masses[0]), (fx!(2), masses[1])].map(|(x, mass)| {
@@ -309,7 +309,7 @@ fn weights_on_a_rope_accelerate_as_theory_says() {
 #[test]
 fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let mut world = world(fx!(-10));
-    // With a ratio of 2, half the mass balances the other weight.
+    // Half the mass balances.
     let (weights, rope) = atwood(&mut world, [fx!(3), fx!(6)], fx!(2));
     run(&mut world, 600);
     for body in weights {
@@ -320,12 +320,11 @@ fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let JointKind::Pulley(pulley) = &mut longer.kind else { panic!("a pulley") };
     pulley.length += fx!(3);
     world.set_joint(rope, &longer).expect("valid");
-    // Both weights fall by a metre before the rope is taut again, after 0.45 s.
+    // The rope is taut again after 0.45 s.
     run(&mut world, 24);
     for body in weights {
         close(world.body(body).expect("valid").velocity().y, fx!(-4), fx!(0.001));
     }
-    // Once the rope is taut again, the weights hang.
     run(&mut world, 600);
     let lengths = weights.map(|body| fx!(10) - at(&world, body).y);
     close(lengths[0] + lengths[1] * 2, pulley_length(&world, rope), fx!(0.01));
@@ -367,7 +366,7 @@ fn couplings_out_of_range_are_refused() {
     );
 }
 
-/// The arm of a rack that is almost three million kilometres away is out of range, and saturates.
+/// The arm of a rack at the other end of the world saturates.
 #[test]
 fn a_rack_may_be_at_the_other_end_of_the_world() {
     let mut world = world(fx!(0));

@@ -1,4 +1,4 @@
-//! Random heaps: boxes, balls, capsules, polygons and rounded boxes that fall into a pit.
+//! Random heaps of shapes that fall into a pit.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -25,7 +25,7 @@ fn random_shape(rng: &mut Rng) -> ShapeDef {
     ShapeDef::new(shape.expect("valid")).restitution(restitution)
 }
 
-/// A heap of 5 to 24 bodies in a pit of 3 to 8 m.
+/// 5 to 24 bodies in a pit of 3 to 8 m.
 fn heap(seed: u64, rolling_resistance: Fx) -> World {
     let mut rng = Rng::new(seed);
     let mut world = World::default();
@@ -51,7 +51,7 @@ fn heap(seed: u64, rolling_resistance: Fx) -> World {
     world
 }
 
-/// Steps for at most a number of seconds, until all bodies sleep. Returns the largest kinetic energy in J.
+/// Steps until all bodies sleep. Returns the largest kinetic energy in J.
 fn settle(world: &mut World, seconds: u32) -> Fx {
     let mut largest = Fx::ZERO;
     for _ in 0..seconds * 60 {
@@ -64,7 +64,7 @@ fn settle(world: &mut World, seconds: u32) -> Fx {
     largest
 }
 
-/// Round bodies without rolling resistance may roll to and fro for ever. With resistance every heap comes to rest.
+/// Without resistance, round bodies may roll to and fro for ever.
 #[test]
 fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     sweep::for_each((0..sweep::size(2400, 60)).collect(), |seed: u64| {
@@ -77,8 +77,8 @@ fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     });
 }
 
-/// Without rolling resistance, at most one heap in forty is still awake after 40 s. In the next 10 s its largest
-/// kinetic energy is less than twice that of the 10 s before, plus 0.01 J.
+/// At most one heap in forty is awake after 40 s. In the next 10 s its largest kinetic energy is less than twice that
+/// of the 10 s before, plus 0.01 J.
 #[test]
 fn few_heaps_are_restless_and_none_gathers_energy() {
     let count = sweep::size(2400, 120);

@@ -1,5 +1,5 @@
-//! Fast bodies meet other bodies: friction, angular momentum and energy of an impact do not depend on how far the
-//! bodies are apart at the start of the tick.
+//! Friction, angular momentum and energy of an impact do not depend on how far the bodies are apart at the start of the
+//! tick.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -25,14 +25,13 @@ fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> ShapeDef {
     ShapeDef::new(Geometry::segment(a, b).expect("valid"))
 }
 
-/// Kinetic energy of all dynamic bodies, in J.
+/// In J.
 fn kinetic(world: &World) -> Fx {
     let dynamic = world.bodies().filter(|(_, body)| body.kind() == BodyKind::Dynamic);
     dynamic.fold(Fx::ZERO, |sum, (_, body)| sum + body.kinetic_energy())
 }
 
-/// A disc that lands with spin `w`, and does not slide afterwards, rolls at `r w / 3`. It conserves its angular
-/// momentum about the point of contact: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
+/// A spinning disc that does not slide rolls at `r w / 3`: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
 #[test]
 fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     let speeds = [5, 10, 20, 40, 100, 200].into_iter();
@@ -53,7 +52,7 @@ fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     });
 }
 
-/// Two balls in free space, one with spin, meet off their centres.
+/// Balls in free space, one with spin, meet off their centres.
 #[test]
 fn colliding_balls_keep_their_angular_momentum() {
     let speeds = [5, 10, 20].into_iter();
@@ -72,7 +71,7 @@ fn colliding_balls_keep_their_angular_momentum() {
             world.spawn(&spins, &[ball]).expect("valid");
             let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
             world.spawn(&def, &[ball]).expect("valid");
-            // The angular momentum, and the sum of the absolute values of its parts.
+            // And the sum of the absolute values of its parts.
             let momentum = |world: &World| {
                 world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
                     let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -89,8 +88,8 @@ fn colliding_balls_keep_their_angular_momentum() {
     );
 }
 
-/// A bar that falls flat onto a ledge below one half of it starts to turn. The impulse that turns it points upwards,
-/// so the bar hardly moves sideways: at most as fast as in Box2D.
+/// A bar that falls flat onto a ledge below one half of it. The impulse points upwards, so the bar moves sideways at
+/// most as fast as in Box2D.
 #[test]
 fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     let cases = [60u32, 240].into_iter().flat_map(|rate| {
@@ -116,7 +115,7 @@ fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     }
 }
 
-/// A rod of restitution 1 that hits a floor without friction: an impact gains no energy, and loses nearly none.
+/// A rod of restitution 1 on a frictionless floor gains no energy, and loses nearly none.
 #[test]
 fn a_spinning_rod_gains_no_energy() {
     for speed in [5, 20, 40] {
@@ -146,7 +145,7 @@ fn a_spinning_rod_gains_no_energy() {
     }
 }
 
-/// Adds the walls of a square room with sides of `2 half` metres. `material` sets the material of the walls.
+/// Walls of a square room with sides of `2 half` metres.
 fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDef) {
     let (place, length) = (half + 1, half + 2);
     for (x, y) in [(0, -place), (0, place), (-place, 0), (place, 0)] {
@@ -156,7 +155,7 @@ fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDe
     }
 }
 
-/// A body in a closed room with restitution 1 never has more energy than at the start, corners and friction included.
+/// Restitution 1, with corners and friction.
 #[test]
 fn a_closed_room_keeps_its_energy() {
     let shapes = |at: usize| match at {
@@ -192,7 +191,7 @@ fn a_closed_room_keeps_its_energy() {
     });
 }
 
-/// Several fast bodies in a closed room, in which bodies often hit walls and each other in the same sub-step.
+/// Bodies often hit walls and each other in one sub-step.
 #[test]
 fn several_bodies_in_a_closed_room_keep_its_energy() {
     let shapes = [rectangle(fx!(0.5), fx!(0.5)), rectangle(fx!(1), fx!(0.1)), circle(fx!(0.5))];
@@ -224,7 +223,7 @@ fn several_bodies_in_a_closed_room_keep_its_energy() {
     });
 }
 
-/// A ball of restitution 1 that is shot into a corner with friction has no more energy afterwards.
+/// A ball of restitution 1 is shot into a corner.
 #[test]
 fn a_corner_with_friction_adds_no_energy() {
     let cases =
@@ -240,7 +239,7 @@ fn a_corner_with_friction_adds_no_energy() {
         let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][shot.unsigned_abs() as usize % 4];
         let angle = Angle::from_radians(PI + fx!(0.05) + fx!(0.0049) * i64::from(shot % 300));
         let velocity = Rot::from_angle(angle).apply_wide(Vec2::new(speed, fx!(0)));
-        // After `seconds` the ball reaches both walls at once, or one of them a little earlier than the other.
+        // After `seconds` the ball reaches both walls at once, or one of them a little earlier.
         let seconds = fx!(0.3) + fx!(0.0013) * i64::from(shot % 53);
         let aside = fx!(0.01) * i64::from(shot % 11 - 5);
         let start = Vec2::new(fx!(0.5) + aside.max(Fx::ZERO), fx!(0.5) - aside.min(Fx::ZERO));
@@ -255,8 +254,7 @@ fn a_corner_with_friction_adds_no_energy() {
     });
 }
 
-/// A ball of restitution 1 flies to and fro between two walls. Its position equals that of a ball that rebounds exactly
-/// at the time of each impact.
+/// The position equals that of a ball that rebounds exactly at the time of each impact.
 #[test]
 fn a_ball_between_walls_keeps_time() {
     for speed in [fx!(3), fx!(10), fx!(40), fx!(123)] {
@@ -279,8 +277,8 @@ fn a_ball_between_walls_keeps_time() {
     }
 }
 
-/// A ball thrown into a wedge of 27 degrees rests between the walls, not in them. The combined friction of ball and
-/// walls is 0.35, which holds the ball wherever it stops.
+/// A ball in a wedge of 27 degrees rests between the walls. The combined friction is 0.35, which holds the ball
+/// wherever it stops.
 #[test]
 fn a_ball_in_a_wedge_rests_between_the_walls() {
     let speeds = [5, 20, 40, 100, 200].into_iter();
@@ -297,7 +295,7 @@ fn a_ball_in_a_wedge_rests_between_the_walls() {
             world.step();
         }
         let Vec2 { x, y } = world.body(ball).expect("there").position();
-        // The walls are the lines x = 0 and y = -2 x.
+        // The lines x = 0 and y = -2 x.
         let from_left = fx_mul(x * 2 + y, fx!(0.4472135955));
         let overlap = fx!(0.3) - (-x).min(from_left);
         assert!(overlap < fx!(0.0105), "{speed} m/s, {phase}: {overlap} m in a wall, at ({x}, {y})");

@@ -1,4 +1,4 @@
-//! Test bench for joints: bodies of a given mass without shapes, and one joint to measure.
+//! Bodies of given masses without shapes, and one joint to measure.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;
@@ -12,19 +12,18 @@ pub(crate) struct Bench {
     pub(crate) b: BodyId,
 }
 
-/// Body A of a bench, to which a joint connects body B.
+/// Body A, joined to body B.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Ground {
     Fixed,
-    /// Dynamic body with this mass in kg.
+    /// Dynamic, with a mass in kg.
     Free(Fx),
 }
 
-/// Sub-steps per second of the default settings.
 pub(crate) const RATE: i64 = 240;
 
 impl Bench {
-    /// Creates A at the origin, and B with 2 kg and a radius of gyration of 0.5 m at a position and angle.
+    /// A is at the origin. B has 2 kg and a radius of gyration of 0.5 m.
     pub(crate) fn new(ground: Ground, gravity: Fx, place: Vec2<Fx>, angle: Fx) -> Self {
         Self::with_mass(ground, gravity, (fx!(2), fx!(0.5)), place, angle)
     }
@@ -36,7 +35,7 @@ impl Bench {
         place: Vec2<Fx>,
         angle: Fx,
     ) -> Self {
-        // Sleeping is off, because a body that creeps to its target would fall asleep on the way.
+        // A body that creeps to its target would fall asleep on the way.
         let config = Config { gravity: Vec2::new(fx!(0), gravity), sleeping: false, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
@@ -54,7 +53,7 @@ impl Bench {
         self.world.add_joint(&def).expect("valid")
     }
 
-    /// Steps, calls `look` after every tick, and expects that the solver has clamped nothing.
+    /// Steps, and calls `look` after every tick.
     pub(crate) fn run(&mut self, ticks: u64, mut look: impl FnMut(u64, &World)) {
         for tick in 0..ticks {
             self.world.step();
@@ -69,14 +68,13 @@ pub(crate) fn close(found: Fx, expected: Fx, within: Fx, what: &str) {
     assert!((found - expected).abs() <= within, "{what}: {found}, expected {expected}");
 }
 
-/// Returns the effective value of two masses or inertias: `1 / (1 / a + 1 / b)`.
+/// `1 / (1 / a + 1 / b)`.
 pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
     lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
 }
 
-/// Returns choices of body A, each with the effective mass and inertia of A and B together. B has 2 kg and 0.5 kg m².
+/// Choices of A, with the effective mass and inertia of A and B. B has 2 kg and 0.5 kg m².
 pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
-    // A has a radius of gyration of 0.4 m.
     let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));
     [(Ground::Fixed, fx!(2), fx!(0.5)), free(fx!(0.02)), free(fx!(200))]
 }

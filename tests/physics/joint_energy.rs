@@ -1,6 +1,6 @@
-//! Joints without driving motors feed no energy into an assembly: the sum of kinetic, potential and spring energy grows
-//! by at most a hundredth, except in the assemblies of [`BEYOND`]. The assemblies are stars, trees, chains, loops,
-//! meshes and grids of 3 to 12 bodies, with mass ratios up to 100 and arms up to 16 radii of gyration.
+//! Joints without driving motors feed no energy into an assembly: kinetic, potential and spring energy grow by at most
+//! a hundredth, except in [`BEYOND`]. Assemblies have 3 to 12 bodies, mass ratios up to 100 and arms up to 16 radii of
+//! gyration.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -14,11 +14,11 @@ use crate::assembly::{Case, Mix, SHAPES, Shape, Start};
 use crate::energy;
 use crate::sweep;
 
-/// Duration of a run in ticks: 20 s.
+/// 20 s.
 const TICKS: u32 = 1200;
 
-/// Assemblies that pull so hard at long arms that a body turns too far within a sub-step, `h^2 F r / I` above 1
-/// (docs/DESIGN.md, "Result and known limits"). They gain 2 to 39 %.
+/// Hard pulls at long arms turn a body too far within a sub-step, `h^2 F r / I` above 1 (docs/DESIGN.md, "Result and
+/// known limits"). They gain 2 to 39 %.
 const BEYOND: [Case; 6] = [
     Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 12 },
     Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
@@ -28,12 +28,12 @@ const BEYOND: [Case; 6] = [
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 45 },
 ];
 
-/// Assemblies in which heavy bodies pull a light one so hard that joints open by metres, until values are clamped. They
-/// gain no energy.
+/// Heavy bodies pull a light one so hard that joints open by metres, until values are clamped, without a gain of
+/// energy.
 const GAPING: [Case; 2] = [
-    // 300 kg hang on a disc of 1 kg, at an arm of 15 radii of gyration.
+    // 300 kg hang on a disc of 1 kg, at 15 radii of gyration.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
-    // In tick 112, three bodies of 100 kg on springs jerk at a body of 1 kg, at a speed of 21 m/s.
+    // In tick 112, three bodies of 100 kg jerk at a body of 1 kg with 21 m/s.
     Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
 ];
 
@@ -61,8 +61,8 @@ fn assemblies_of_hinges_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Hit);
 }
 
-/// Welds whose anchors, angles or both are springs. If the stiffness between the anchors depended on the directions of
-/// the arms, 6 of 60 assemblies would gain up to 5 times their energy.
+/// If the stiffness between anchors depended on the directions of the arms, 6 of 60 assemblies would gain up to 5 times
+/// their energy.
 #[test]
 fn assemblies_of_soft_welds_gain_no_energy() {
     never_gain(Mix::SoftWeld, Start::Hit);
@@ -83,23 +83,22 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// Hinges and welds push both bodies at one point. If each body were pushed at its own anchor, angular momentum would
-/// grow where the anchors are apart, and the energy of 9 % of these assemblies would grow too, by up to 50 times.
+/// Both bodies are pushed at one point. If each were pushed at its own anchor, angular momentum would grow where the
+/// anchors are apart, and energy in 9 % of these assemblies, by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);
     never_gain(Mix::Weld, Start::Hang);
 }
 
-/// Without geometric stiffness, hard pulls at long arms let a hanging assembly gain up to 934 446 times its energy.
-/// With it, the worst assembly of hinges in [`BEYOND`], which this test leaves out, gains 23 %.
+/// Without geometric stiffness, a hanging assembly would gain up to 934 446 times its energy. With it, the worst in
+/// [`BEYOND`] gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
     never_gain(Mix::Hinge, Start::Hang);
 }
 
-/// The assemblies of [`BEYOND`] stay together.
 #[test]
 fn assemblies_beyond_the_engine_stay_together() {
     sweep::for_each(BEYOND.to_vec(), |case| {
@@ -109,8 +108,8 @@ fn assemblies_beyond_the_engine_stay_together() {
     });
 }
 
-/// In free space the momentum of an assembly of hinges or welds does not change. Its angular momentum changes only
-/// where geometric stiffness acts: by up to 5 % in 20 s, in at most one of 50 assemblies.
+/// In free space momentum is conserved. Angular momentum changes where geometric stiffness acts: by up to 5 % in 20 s,
+/// in at most one of 50 assemblies.
 #[test]
 fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     let seeds = sweep::size(60, 2);
@@ -136,7 +135,7 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
 }
 
 /// If the stiffness of springs along a line depended on the pose, 10 of 60 assemblies of wheels, or of rods, ropes and
-/// distance springs, that turn or hang would gain energy.
+/// springs, would gain energy.
 #[test]
 fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     for mix in [Mix::Wheel, Mix::Rod, Mix::Prismatic] {
@@ -145,7 +144,7 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     }
 }
 
-/// Without geometric stiffness of sliders, these four would gain up to 7600 times their energy.
+/// Without geometric stiffness of sliders, they would gain up to 7600 times their energy.
 #[test]
 fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
@@ -161,9 +160,8 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     });
 }
 
-/// Springs of motors and springs of limited force are solved in the blocks. If they were solved one after the other
-/// before the blocks, 6 of 720 assemblies of motors would gain up to 40 times their energy, as would 10 of 720
-/// assemblies on springs that only pull, only push or have a largest force.
+/// If the springs were solved before the blocks, 6 of 720 assemblies of motors would gain up to 40 times their energy,
+/// as would 10 of 720 on springs of limited force.
 #[test]
 fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     for mix in [Mix::MotorSpring, Mix::LimitedSpring] {
@@ -173,25 +171,22 @@ fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     }
 }
 
-/// A hub with limbs around it. Each limb is turned by its own angle, and joined to the hub half a metre from the hub's
-/// centre.
+/// A hub with limbs, each turned by its own angle and joined half a metre from the hub's centre.
 struct Star {
     joint: JointKind,
     hub: ShapeDef,
     limb: ShapeDef,
-    /// Number of limbs.
     limbs: i64,
     /// Half the length of a limb.
     reach: Fx,
 }
 
 impl Star {
-    /// A disc with limbs welded around it.
     fn welded(limbs: i64, limb: ShapeDef, reach: Fx) -> Self {
         Star { joint: Weld::rigid().into(), hub: disc(), limb, limbs, reach }
     }
 
-    /// Adds the star to a world. Returns the last limb.
+    /// Returns the last limb.
     fn spawn(&self, world: &mut World) -> BodyId {
         let &Star { joint, hub, limb, limbs, reach } = self;
         let hub = world.spawn(&BodyDef::dynamic(), &[hub]).expect("valid");
@@ -212,7 +207,7 @@ fn disc() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"))
 }
 
-/// A limb that collides with the floor but not with its neighbours, which it may overlap.
+/// Collides with the floor but not with its neighbours, which it may overlap.
 fn limb(half_width: Fx, half_height: Fx) -> ShapeDef {
     let shape = ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"));
     shape.filter(Filter { category: 2, mask: !2, group: 0 })
@@ -222,8 +217,7 @@ fn weightless(tick_rate: u32) -> World {
     World::new(Config { gravity: Vec2::ZERO, tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// One of the limbs is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times
-/// that of the start.
+/// A limb is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times.
 #[test]
 fn a_star_of_welds_that_is_hit_gains_no_energy() {
     for limbs in 3..=8 {
@@ -248,9 +242,8 @@ fn a_star_of_welds_that_is_hit_gains_no_energy() {
     }
 }
 
-/// One of the limbs is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. If rotations
-/// were predicted by up to a quarter of a radian, the energy of a box with four boxes would rise to 9 times that of the
-/// start.
+/// A limb is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. If rotations were
+/// predicted by up to a quarter of a radian, the energy of a box with four boxes would rise to 9 times.
 #[test]
 fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -284,8 +277,7 @@ fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     });
 }
 
-/// Half of the bodies of a star are thrown in directions of their own, or the star falls straight down. The star is
-/// asleep after a minute.
+/// Half of the bodies are thrown, or the star falls straight down. It sleeps after a minute.
 #[test]
 fn a_star_of_welds_comes_to_rest_on_a_floor() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -316,12 +308,12 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
     });
 }
 
-/// Dropping the scratch memory and restoring an earlier state change no bit of a world with blocks.
+/// Dropped scratch memory and restored states change no bit.
 #[test]
 fn a_block_depends_on_nothing_but_the_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
     let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
-    // The last case has geometric stiffness.
+    // With geometric stiffness.
     for case in hit.into_iter().chain([BEYOND[1]]) {
         let build = || case.build().world;
         let (mut whole, mut dropped) = (build(), build());

@@ -1,4 +1,4 @@
-//! Joints hold their bodies in place and bear the loads that theory predicts.
+//! Joints hold and bear loads as theory predicts.
 
 use lockstep2d::body::{BodyDef, MassSource};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close};
 
-/// A point mass on a rod of 2 m: `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`.
+/// A rod of 2 m: `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`.
 #[test]
 fn a_rod_is_a_pendulum() {
     let (sin, cos) = (fx!(0.0998334), fx!(0.9950042));
@@ -31,14 +31,13 @@ fn a_rod_is_a_pendulum() {
     close(period, small + small / 1600, small / 200, "s");
 }
 
-/// A slider at 30 degrees to the horizontal, with its load 1 m off the axis, slides as on a frictionless slope and does
-/// not rotate.
+/// A slider at 30 degrees, with its load 1 m off the axis, slides without friction and does not turn.
 #[test]
 fn a_slider_slides_down_its_slope_and_does_not_turn() {
     for ground in [Ground::Fixed, Ground::Free(fx!(1000000))] {
         let mut bench = Bench::new(ground, fx!(-10), Vec2::ZERO, fx!(0));
         if let Ground::Free(_) = ground {
-            // Gravity would accelerate the ground as well, so only the load gets a force.
+            // Gravity would accelerate the ground as well.
             bench.world.set_gravity(Vec2::ZERO).expect("valid");
         }
         let tilt = Angle::from_degrees(fx!(-30));
@@ -59,12 +58,12 @@ fn a_slider_slides_down_its_slope_and_does_not_turn() {
             });
         }
         let along = bench.world.joint_translation(joint).expect("there").x;
-        // g/2 sin 30 t^2, plus half a sub-step because of the semi-implicit integration.
+        // g/2 sin 30 t^2, plus half a sub-step of the integration.
         close(along, fx!(10), fx!(0.05), "m");
     }
 }
 
-/// Planks of 1 m and 1 kg, welded end to end and to a wall. Returns the world and the height of the tip.
+/// Planks of 1 m and 1 kg, welded end to end and to a wall. Returns the height of the tip.
 fn cantilever(planks: i64, kind: Weld) -> (World, Fx) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };
@@ -89,7 +88,7 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
         for (id, _) in world.joints() {
             assert!(world.joint_length(id).expect("there") < fx!(0.01));
         }
-        // The wall bears the whole load: 10 N per plank, and the torque of these loads.
+        // 10 N per plank, and the torque of these loads.
         let (first, _) = world.joints().next().expect("there");
         let (force, torque) = world.joint_force(first).expect("there");
         let planks = Fx::from_num(planks);
@@ -98,9 +97,9 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
     }
 }
 
-/// At rest a soft joint yields to a load `m g` on a mass `m` by `g / omega^2`, as a spring does. With two rods, the
-/// upper hinge has 60 Hz and bears both rods. With one rod, the hinge connects a body without other joints to a fixed
-/// body. Such an anchored hinge has 120 Hz, and under an equal load yields a quarter as much.
+/// A soft joint yields to a load `m g` on a mass `m` by `g / omega^2`. With two rods, the upper hinge has 60 Hz and
+/// bears both. With one rod, the hinge is anchored: it connects a body without other joints to a fixed body, has 120
+/// Hz, and yields a quarter as much to an equal load.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {
@@ -119,13 +118,12 @@ fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() 
         bench.run(600, |_, _| {});
         bench.world.joint_length(joints[0]).expect("there")
     };
-    // 10 / (120 pi)^2 and 10 / (240 pi)^2.
     let (soft, stiff) = (fx!(0.000070362), fx!(0.0000175905));
     close(sag(1), stiff, stiff / 50, "m");
     close(sag(2), soft * 2, soft / 50, "m");
 }
 
-/// A wheel of 2 kg on a spring of 3 Hz comes to rest `g / omega^2` below the spring's target.
+/// 2 kg on 3 Hz come to rest `g / omega^2` below the target.
 #[test]
 fn a_wheel_sinks_into_its_suspension() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
@@ -138,14 +136,14 @@ fn a_wheel_sinks_into_its_suspension() {
         lowest = lowest.min(at.x);
         assert!(at.y.abs() < fx!(0.001), "{} m off the axis", at.y);
     });
-    // The deflection is 10 / (6 pi)^2; the first overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 of it.
+    // 10 / (6 pi)^2; the first overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 of it.
     let sunk = fx!(0.028145);
     close(bench.world.joint_translation(joint).expect("there").x, -sunk, sunk / 100, "m at rest");
     close(lowest, -fx_mul(sunk, fx!(1.372)), sunk / 20, "m at first");
 }
 
-/// Joints of six kinds with mass ratios of up to 100, sizes of 1 cm to 50 m, a billion metres from the origin: nothing
-/// is clamped, and the hinge that carries both bodies opens by less than 5 cm plus a twentieth of the size.
+/// Mass ratios up to 100, 1 cm to 50 m, a billion metres from the origin. The hinge that carries both bodies opens by
+/// less than 5 cm plus a twentieth of the size.
 #[test]
 fn joints_work_at_any_size_and_place() {
     let kinds = |size: Fx| -> [JointKind; 8] {
@@ -169,7 +167,7 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A mass ratio of 100 makes a joint of any size sag by some centimetres, so small joints have a ratio of 1.
+        // A mass ratio of 100 makes joints of any size sag by some centimetres.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

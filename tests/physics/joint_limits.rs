@@ -1,4 +1,4 @@
-//! Limits hold within a hundredth of their range, whatever drives a joint against them.
+//! Limits hold within a hundredth of their range.
 
 use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,8 +8,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// Drives a joint up and then down, with an acceleration of 300 m/s² or rad/s², and expects it to reach both ends and
-/// go no further.
+/// A joint driven up and then down at 300 m/s² or rad/s² reaches both ends and goes no further.
 fn stays(
     kind: impl Fn(Fx, Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -46,7 +45,7 @@ fn a_slider_and_a_suspension_stop_at_their_limits() {
     let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
     let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
     stays(kind, place, range, translation);
-    // The suspension is driven by a spring instead of a motor, with a target 10 m away.
+    // Driven by a spring with a target 10 m away.
     let kind =
         |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
     stays(kind, place, range, translation);
@@ -60,7 +59,7 @@ fn a_distance_stops_at_its_limits() {
     stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), range, length);
 }
 
-/// A rod of 2 kg falls from the horizontal onto a stop below: limit and hinge hold.
+/// 2 kg fall from the horizontal onto a stop.
 #[test]
 fn a_limit_bears_a_falling_rod() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(2), fx!(0)), fx!(0));
@@ -70,17 +69,17 @@ fn a_limit_bears_a_falling_rod() {
     bench.run(300, |_, world| {
         lowest = lowest.min(world.joint_angle(joint).expect("there"));
         let gap = world.joint_length(joint).expect("there");
-        // The gap is largest at the impact at 8 m/s, because limit and hinge are solved one after the other.
+        // Limit and hinge are solved one after the other: the gap is largest at the impact at 8 m/s.
         assert!(gap < fx!(0.03), "gap {gap} m");
     });
     assert!(lowest > fx!(-1.02), "{lowest} rad");
     let (force, torque) = bench.world.joint_force(joint).expect("there");
-    // At rest the hinge carries the weight, 20 N, and the stop carries its torque, 20 N times 2 m cos 1.
+    // The hinge carries 20 N, and the stop 20 N times 2 m cos 1.
     close(force.y, fx!(20), fx!(0.2), "N");
     close(torque, fx!(21.612), fx!(0.3), "N m");
 }
 
-/// A body on a rope of 3 m falls freely until the rope is taut, and no further.
+/// Free fall until the rope of 3 m is taut.
 #[test]
 fn a_rope_is_slack_and_then_taut() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(-1)), fx!(0));
@@ -101,9 +100,8 @@ fn a_rope_is_slack_and_then_taut() {
     close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
 }
 
-/// A flipper: a motor of up to 10^9 N m between two boxes that a hinge joins at their edges. It hits the limit once and
-/// then rests there. If the motor acted against the limit, both impulses would grow until the hinge turned through the
-/// limit, by up to 266 rad.
+/// A motor of up to 10^9 N m between two boxes hits the limit once and rests there. If it acted against the limit, both
+/// impulses would grow until the hinge turned through it, by up to 266 rad.
 #[test]
 fn a_motor_of_any_force_does_not_turn_a_hinge_through_its_limit() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -145,9 +143,9 @@ fn the_angle_of_a_hinge_counts_turns() {
         ticks += 1;
         assert!(ticks < 200);
     }
-    // The joint's angle starts at minus a quarter turn, and grows by 0.5 rad in a tick.
+    // From minus a quarter turn, by 0.5 rad in a tick.
     close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
-    // The spring turns a joint to its lower limit, which is 9 turns away.
+    // To the lower limit, 9 turns away.
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
     let nine = TAU * 9;
     let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);

@@ -1,4 +1,4 @@
-//! Motors reach their speed, and no force or torque exceeds its limit.
+//! Motors reach their speed within their limits of force.
 
 use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,14 +8,13 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// Distinguishes joints that accelerate a mass from joints that accelerate an inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Load {
     Mass,
     Inertia,
 }
 
-/// A motor that needs 2 s to reach its speed accelerates at `max / mass` until then, and holds the speed afterwards.
+/// A motor that needs 2 s accelerates at `max / mass` until then, and holds its speed afterwards.
 fn accelerates(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -55,7 +54,7 @@ fn motors_have_the_acceleration_of_theory() {
     accelerates(kind, Vec2::ZERO, Load::Mass, drift);
 }
 
-/// A lever of 2 kg, 1 m from its hinge, has a torque of 20 N m: a motor of 18 N m yields, one of 22 N m lifts it.
+/// 2 kg, 1 m from the hinge: a motor of 18 N m yields, one of 22 N m lifts.
 #[test]
 fn a_motor_stalls_under_a_larger_load() {
     for (torque, rises) in [(fx!(18), false), (fx!(22), true)] {
@@ -69,7 +68,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // The motor of a slider has to lift a weight of 20 N.
+    // A weight of 20 N.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);
@@ -77,13 +76,13 @@ fn a_motor_stalls_under_a_larger_load() {
         let joint = bench.join(def);
         bench.run(30, |_, _| {});
         let height = bench.world.joint_translation(joint).expect("there").x;
-        // A net force of 2 N accelerates 2 kg at 1 m/s² for half a second.
+        // 2 N accelerate 2 kg at 1 m/s² for half a second.
         close(height.abs(), fx!(0.125), fx!(0.005), "m");
         assert_eq!(height > fx!(0), rises);
     }
 }
 
-/// Friction 0.5 holds a box of 4 kg on a floor against forces of up to 20 N.
+/// Friction 0.5 holds 4 kg against up to 20 N.
 #[test]
 fn dragging_with_less_than_friction_does_not_move_a_box() {
     for (force, moves) in [(fx!(18), false), (fx!(24), true)] {
@@ -104,7 +103,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
         });
         let x = bench.world.body(body).expect("there").position().x;
         if moves {
-            // A net force of about 4 N accelerates 4 kg at 1 m/s² for 2 s.
+            // About 4 N accelerate 4 kg at 1 m/s² for 2 s.
             assert!(x > fx!(1) && x < fx!(4), "{force} N: {x} m");
         } else {
             assert!(x.abs() < fx!(0.01), "{force} N: {x} m");
@@ -112,7 +111,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
     }
 }
 
-/// A hinge with friction, a limit and a spring, as in a ragdoll, comes to rest between its limits.
+/// Friction, a limit and a spring, as in a ragdoll.
 #[test]
 fn a_stiff_joint_comes_to_rest() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0.3), fx!(0)), fx!(0));
@@ -127,7 +126,7 @@ fn a_stiff_joint_comes_to_rest() {
     let angle = bench.world.joint_angle(joint).expect("there");
     bench.run(60, |_, _| {});
     close(bench.world.joint_angle(joint).expect("there"), angle, fx!(0.001), "at rest");
-    // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's torque is 6 cos angle, and the
-    // torque of friction is at most 0.5.
+    // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's 6 cos angle, and that of
+    // friction at most 0.5.
     assert!(fx!(0.01) < angle + fx!(0.05) && angle < fx!(0.05), "{angle} rad");
 }

@@ -1,11 +1,10 @@
-//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step:
+//! Springs follow the implicit integration of a damped oscillator, up to rounding:
 //!
 //! ```text
 //! v' = (v - K h omega^2 x) / (1 + K (2 zeta h omega + h^2 omega^2)),   x' = x + h v'
 //! ```
 //!
-//! Only rounding differs. `K` is 1, except where a spring that pulls at the end of an arm also turns the bodies, or
-//! where two springs act.
+//! `K` is 1, except where a spring at the end of an arm also turns the bodies, or where two springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -15,13 +14,12 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, RATE};
 
-/// Reference recurrence; a tick has four sub-steps.
+/// A tick has four sub-steps.
 struct Oscillator {
     x: Fx,
     v: Fx,
     hertz: Fx,
     damping_ratio: Fx,
-    /// `K` in the recurrence.
     mobility: Fx,
 }
 
@@ -39,7 +37,7 @@ impl Oscillator {
     }
 }
 
-/// Compares a spring, stretched by 0.5 at the start, to the recurrence for 200 ticks: at least three periods.
+/// Stretched by 0.5, compared for at least three periods.
 fn follows(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -116,11 +114,10 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The stiffness of a spring between two points is computed for two point masses. At the end of an arm `r`, where B
-/// also turns, the spring swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
+/// The stiffness is that of two point masses. At the end of an arm `r` the spring swings `sqrt(1 + m r^2 / (mB k^2))`
+/// times as fast, with the reduced mass `m`.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
-    // B has 2 kg and a radius of gyration of 0.5 m.
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
         for (arm, hertz, ratio) in [
             (fx!(0.5), fx!(2), fx!(0.1)),
@@ -129,7 +126,7 @@ fn a_point_on_an_arm_swings_faster() {
             (fx!(1.5), fx!(5), fx!(0.5)),
             (fx!(8), fx!(0.5), fx!(0)),
         ] {
-            // The stretch is so small that B's rotation does not shorten the arm.
+            // B's rotation hardly shortens the arm.
             let x = arm / 100;
             let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
             let kind = Motor::new().linear_spring(hertz, ratio, Fx::MAX);
@@ -146,7 +143,7 @@ fn a_point_on_an_arm_swings_faster() {
     }
 }
 
-/// The stiffness of springs along a line, in suspensions and distance joints, is also computed for two point masses.
+/// As in [`a_point_on_an_arm_swings_faster`], for suspensions and distance joints.
 #[test]
 fn a_spring_along_a_line_swings_faster_on_an_arm() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
@@ -156,7 +153,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
             (fx!(1.5), fx!(1), fx!(0.1)),
             (fx!(1.5), fx!(5), fx!(0.5)),
         ] {
-            // The stretch is so small that B's rotation does not change the arm.
+            // B's rotation hardly changes the arm.
             let x = arm / 1000;
             let long = fx!(2);
             let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);
@@ -166,7 +163,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
                 [(rest.into(), -long, long), (JointKind::from(suspension), fx!(0), fx!(0))]
             {
                 let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
-                // The spring acts along y, on A through A's centre.
+                // Along y, through A's centre.
                 let def = JointDef::new(bench.a, bench.b, kind).angle_a(Angle::QUARTER);
                 let joint = bench.join(def.anchor_a((fx!(0), from)).anchor_b((-arm, fx!(0))));
                 let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
@@ -181,7 +178,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
     }
 }
 
-/// Two welds at one body are solved together. Side by side, they are one spring of twice the stiffness and damping.
+/// Two welds at one body act as one of twice the stiffness and damping.
 #[test]
 fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
     for ground in [Ground::Fixed, Ground::Free(fx!(0.7)), Ground::Free(fx!(40))] {
@@ -207,7 +204,7 @@ fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
     }
 }
 
-/// An off-centre anchor lets the body rotate as well; at rest the spring has reached its target.
+/// At rest the spring has reached its target.
 #[test]
 fn a_spring_on_an_arm_comes_to_rest_where_it_pulls() {
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(1)), fx!(1));

@@ -5,7 +5,7 @@ use lockstep2d::math::{Fx, PI, fx_mul, sqrt};
 
 use crate::{energy, joint_gap, open, run, speed_max, sweep};
 
-/// A rod of 1 m and 1 kg that turns about its end at 20 rad/s has a kinetic energy of `1/2 (1/3) 20^2 = 66.7 J`.
+/// 1 m and 1 kg at 20 rad/s: `1/2 (1/3) 20^2 = 66.7 J`.
 #[test]
 fn a_spinning_rod_keeps_its_hinge_and_much_of_its_energy() {
     let mut game = open("spinning_rod");
@@ -63,14 +63,13 @@ fn a_grid_of_19_800_hinges_stays_calm() {
     let start = energy(game.world());
     run(&mut game, sweep::size(500, 200), |tick, world| {
         assert!(energy(world) <= start, "tick {tick}: energy {} J above the start", energy(world) - start);
-        // For three ticks a corner of the cloth moves at 21 m/s, like the end of a whip. A fall from its height would
-        // give 44 m/s.
+        // For three ticks a corner of the cloth moves at 21 m/s, like the end of a whip. A fall would give 44 m/s.
         assert!(speed_max(world) <= fx!(25), "tick {tick}: {} m/s", speed_max(world));
         assert!(joint_gap(world) <= fx!(0.7), "tick {tick}: gap {} m", joint_gap(world));
     });
 }
 
-/// Potential energy is measured from the height of the hinge, where all bodies start at rest, so it starts at 0.
+/// Potential energy is measured from the hinge.
 #[test]
 fn a_chain_carries_a_hundredfold_weight() {
     let mut game = open("chain");
@@ -81,15 +80,14 @@ fn a_chain_carries_a_hundredfold_weight() {
     });
 }
 
-/// A thin rod swings about its end with the period `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude
-/// `a`.
+/// A thin rod about its end: `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude `a`.
 #[test]
 fn a_pendulum_swings_with_the_period_of_theory() {
     let mut game = open("pendulum");
     let body = game.world().bodies().last().expect("a rod").0;
     let pivot_height = fx!(0);
     let lowest = |world: &lockstep2d::world::World| {
-        // Energy relative to the state in which the rod hangs at rest, with its centre 0.5 m below the hinge.
+        // Relative to the rod at rest, 0.5 m below the hinge.
         let rod = world.body(body).expect("still there");
         energy(world) + fx_mul(rod.mass() * 10, fx!(0.5) - pivot_height)
     };
@@ -98,7 +96,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     run(&mut game, 3600, |tick, world| {
         let x = world.body(body).expect("still there").position().x;
         if last < Fx::ZERO && x >= Fx::ZERO {
-            // The time of the crossing is interpolated between ticks.
+            // Interpolated between ticks.
             let part = lockstep2d::math::fx_div(x, x - last).expect("it moves");
             crossings.push((Fx::from_num(tick + 1) - part) / 60);
         }
@@ -107,7 +105,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     });
     let periods = i64::try_from(crossings.len()).expect("few") - 1;
     let period = (crossings[crossings.len() - 1] - crossings[0]) / periods;
-    // The rod is 0.04 m thick: I = m (1 + 0.04^2) / 12 + m / 4.
+    // 0.04 m thick: I = m (1 + 0.04^2) / 12 + m / 4.
     let over_g = (fx!(1.0016) / 12 + fx!(0.25)) / 5;
     let small = fx_mul(PI * 2, sqrt(over_g).expect("positive"));
     let theory = small + small / 1600;

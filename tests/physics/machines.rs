@@ -1,5 +1,4 @@
-//! Joints stay closed, resting bodies fall asleep, and bodies stay in their boxes: errors are mostly within 1.2 times
-//! those of Box2D 3.2 in the same scenes.
+//! Errors are mostly within 1.2 times those of Box2D 3.2 in the same scenes.
 
 use lockstep2d::body::Body;
 use lockstep2d::fx;
@@ -10,7 +9,7 @@ use lockstep2d_scenes::Scene;
 
 use super::{deepest, joint_gap, open, speed_max};
 
-/// Plays a scene with its script and calls `look` with the world after every tick.
+/// Plays a scene with its script.
 fn play(name: &str, ticks: u64, mut look: impl FnMut(u64, &World)) -> Sandbox {
     let scene = Scene::find(name).expect("a scene");
     let mut game = open(name);
@@ -37,9 +36,8 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// In Box2D's fall of this ragdoll the deepest overlap is 5.0 mm. The deepest overlap of a single fall is partly
-/// chance, so this test plays 16 falls with different velocities: the deepest overlap is at most 6 mm in 15 of them,
-/// and at most 10 mm in the other one.
+/// 5.0 mm in Box2D's fall. The depth of a single fall is partly chance: at most 6 mm in 15 of 16 falls, and 10 mm in
+/// the other.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);
@@ -60,9 +58,8 @@ fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     assert!(depths[8] <= fx!(0.0025) && depths[14] <= fx!(0.006) && depths[15] <= fx!(0.01), "{depths:?} m");
 }
 
-/// Ragdolls that land at 27 m/s, half a metre apart, collapse onto each other. At most 0.8 % of the contact points are
-/// deeper than 20 mm. More would be if the bones got the contacts of the predicted times of impact, and if two tiles of
-/// the floor counted as a wedge.
+/// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. More would
+/// be if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
 #[test]
 fn ragdolls_that_rain_hardly_sink_into_each_other() {
     let (mut deep, mut count) = (0, 0);
@@ -82,7 +79,7 @@ fn a_bridge_of_50_planks_bears_ten_boxes() {
         assert!(speed_max(world) <= fx!(16.6), "tick {tick}: {} m/s", speed_max(world));
         assert!(deepest(world) <= fx!(0.22), "tick {tick}: overlap {} m", deepest(world));
     });
-    // The weight of ten boxes makes the bridge sag by 4 m.
+    // Ten boxes make the bridge sag by 4 m.
     assert!(dynamic(game.world()).all(|body| body.position().y > fx!(-6)));
     assert!(deepest(game.world()) <= fx!(0.004), "overlap {} m", deepest(game.world()));
 }
@@ -104,7 +101,7 @@ fn nothing_leaves_a_turning_box() {
         assert!(joint_gap(world) <= fx!(0.001), "tick {tick}: gap {} m", joint_gap(world));
     });
     let container = dynamic(game.world()).next().expect("the first");
-    // The angle after 5 s at 25 degrees per second is 125 degrees.
+    // 25 degrees per second for 5 s.
     let angle = container.angle().to_degrees();
     assert!((angle - fx!(125)).abs() < fx!(0.5), "{angle} degrees");
     let inside = |body: &Body| {

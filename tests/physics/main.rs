@@ -1,5 +1,4 @@
-//! Physics against theory and, where there is no theory, against bounds. Each file of tests covers one subject. The
-//! goldens and `replays/` may change only while these tests pass.
+//! Physics against theory, or against bounds where there is no theory.
 
 mod areas;
 mod assembly;
@@ -42,13 +41,12 @@ use lockstep2d::world::World;
 use lockstep2d_scenes::Scene;
 use lockstep2d_tests::sweep;
 
-/// Returns the scene with a name, before its first tick.
 fn open(name: &str) -> Sandbox {
     let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
     Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid")
 }
 
-/// Runs a scene without commands and calls `look` with the world after every tick.
+/// Runs a scene without commands.
 fn run(game: &mut Sandbox, ticks: u64, mut look: impl FnMut(u64, &World)) {
     for tick in 0..ticks {
         game.step(&[vec![]]);
@@ -58,7 +56,7 @@ fn run(game: &mut Sandbox, ticks: u64, mut look: impl FnMut(u64, &World)) {
     assert_eq!(game.world().faults(), 0, "expected no clamped or saturated value in the solver");
 }
 
-/// Returns the kinetic and potential energy of all dynamic bodies in J.
+/// Kinetic and potential energy of the dynamic bodies in J.
 fn energy(world: &World) -> Fx {
     let gravity = world.config().gravity;
     let of = |body: &lockstep2d::body::Body| {
@@ -71,18 +69,18 @@ fn energy(world: &World) -> Fx {
         .fold(Fx::ZERO, |a, b| a + b)
 }
 
-/// Returns the largest gap of any joint in metres.
+/// In metres.
 fn joint_gap(world: &World) -> Fx {
     let gap = |id| world.joint_anchors(id).map_or(Fx::ZERO, |(a, b)| a.distance(b));
     world.joints().map(|(id, _)| gap(id)).max().unwrap_or(Fx::ZERO)
 }
 
-/// Returns the speed of the fastest dynamic body in m/s.
+/// In m/s.
 fn speed_max(world: &World) -> Fx {
     speeds(world).max().unwrap_or(Fx::ZERO)
 }
 
-/// Returns the mean speed of dynamic bodies in m/s.
+/// In m/s.
 fn speed_mean(world: &World) -> Fx {
     let sum = speeds(world).fold(Fx::ZERO, |a, b| a + b);
     sum / i64::try_from(speeds(world).count().max(1)).expect("a small number")
@@ -92,7 +90,7 @@ fn speeds(world: &World) -> impl Iterator<Item = Fx> {
     world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| body.velocity().length())
 }
 
-/// Returns the deepest overlap of any contact in metres.
+/// In metres.
 fn deepest(world: &World) -> Fx {
     let depth = |point: &lockstep2d::collision::ManifoldPoint| -Fx::from(point.separation);
     world.contacts().flat_map(|contact| contact.manifold.points()).map(depth).max().unwrap_or(Fx::ZERO)

@@ -1,4 +1,4 @@
-//! Contact points of shapes at difficult places: the corners of rounded shapes, and outlines that hardly bend.
+//! Contact points at corners of rounded shapes, and on outlines that hardly bend.
 
 use lockstep2d::body::{Geometry, Polygon};
 use lockstep2d::fx;
@@ -7,14 +7,14 @@ use lockstep2d::world::Probe;
 
 use crate::sweep;
 
-/// Returns the separation of the deepest point of a manifold, in metres.
+/// Separation of the deepest point in metres.
 fn gap(a: &Probe, b: &Probe) -> Option<Fx> {
     let manifold = a.manifold(b, fx!(0.1));
     manifold.points().iter().map(|point| Fx::from(point.separation)).min()
 }
 
-/// The gap does not depend on the order of the shapes, and equals their distance where they are apart. The tolerance is
-/// the 0.5 mm by which the second shape's face must be better to become the reference face.
+/// The gap equals the distance of shapes that are apart. The second shape's face must be better by 0.5 mm to become the
+/// reference face.
 #[test]
 fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     let (count, tolerance) = (sweep::size(100_000, 10_000), fx!(0.00051));
@@ -46,15 +46,15 @@ fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     assert!(compared > count / 50, "expected shapes that are apart, found {compared}");
 }
 
-/// Contact points lie half-way between the surfaces. This includes triangles up to 117 m long and micrometres thick,
-/// whose faces differ by less than the rounding of their normals times their length.
+/// Contact points lie half-way between the surfaces, even of triangles up to 117 m long and micrometres thick, whose
+/// faces differ by less than the rounding of their normals.
 #[test]
 fn contact_points_lie_on_outlines_that_hardly_bend() {
     let (mut rng, mut points) = (Rng::new(67), 0);
     let count = sweep::size(100_000, 10_000);
     for case in 0..count {
         let length = rng.range(fx!(20), fx!(117));
-        // A thickness from 2 um to 2 cm.
+        // 2 um to 2 cm.
         let thin = |rng: &mut Rng| {
             let most = [fx!(0.00001), fx!(0.0005), fx!(0.02)][rng.below(3) as usize];
             rng.range(fx!(0.000002), most)

@@ -1,8 +1,8 @@
-//! A joint between two free bodies conserves their momentum and angular momentum: its impulses act on both bodies at
-//! one point, however far its anchors are apart.
+//! A joint between two free bodies conserves momentum and angular momentum: its impulses act at one point, however far
+//! its anchors are apart.
 //!
-//! Momentum is compared with the sum of its absolute parts, `sum m |v|`, and angular momentum about the common centre
-//! of mass with `sum m |r x v| + m k^2 |w|`.
+//! Momentum is compared with `sum m |v|`, and angular momentum about the common centre of mass with `sum m |r x v| + m
+//! k^2 |w|`.
 
 use lockstep2d::body::{Body, BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -12,7 +12,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Momentum, angular momentum about the common centre of mass, and the sums of the absolute parts of both.
+/// About the common centre of mass, with sums of absolute parts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Momentum {
     linear: Vec2<Fx>,
@@ -44,7 +44,6 @@ impl Momentum {
     }
 }
 
-/// Chooses random definitions of joints.
 struct Choice(Rng);
 
 impl Choice {
@@ -56,7 +55,7 @@ impl Choice {
         self.0.range(-most, most)
     }
 
-    /// Returns a random largest force or torque, which is unlimited in a quarter of all cases.
+    /// Unlimited in a quarter of the cases.
     fn force(&mut self) -> Fx {
         if self.one_in(4) { Fx::MAX } else { self.0.range(fx!(0.1), fx!(300)) }
     }
@@ -69,7 +68,7 @@ impl Choice {
         if self.one_in(4) { Fx::ZERO } else { self.0.range(fx!(0), fx!(2)) }
     }
 
-    /// Returns a random target speed. In half of all cases it is 0, which makes a motor act as friction.
+    /// 0 in half of the cases, which makes a motor act as friction.
     fn speed(&mut self) -> Fx {
         if self.one_in(2) { Fx::ZERO } else { self.within(fx!(2)) }
     }
@@ -147,16 +146,16 @@ impl Choice {
         if soft { kind.angular(self.hertz(), self.damping_ratio()) } else { kind }.into()
     }
 
-    /// A mass of 0.1 to 100 kg: each decade is equally likely.
+    /// 0.1 to 100 kg: each decade is equally likely.
     fn mass(&mut self) -> Fx {
         let decade = [fx!(0.1), fx!(1), fx!(10)][self.0.below(3) as usize];
         fx_mul(decade, self.0.range(fx!(1), fx!(10)))
     }
 
-    /// A square of 0.1 to 2 m with a random anchor on it.
+    /// A square of 0.1 to 2 m, with an anchor on it.
     fn end(&mut self) -> (BodyDef, Vec2<Fx>) {
         let half = self.0.range(fx!(0.05), fx!(1));
-        // The radius of gyration of a square is its side divided by the root of 6.
+        // The side divided by the root of 6.
         let gyration = fx_mul(half, fx!(0.81649658));
         let body = BodyDef::dynamic()
             .mass(MassSource::Given { mass: self.mass(), centre: Vec2::ZERO, gyration })
@@ -167,7 +166,7 @@ impl Choice {
     }
 }
 
-/// Two free bodies with a random joint. A joint that holds rigidly begins with its anchors in place.
+/// A joint that holds rigidly begins with its anchors in place.
 fn pair(number: u64) -> (World, JointKind) {
     let mut choice = Choice(Rng::new(number));
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -192,8 +191,7 @@ fn pair(number: u64) -> (World, JointKind) {
     (world, kind)
 }
 
-/// Returns the largest changes of momentum and angular momentum of a pair within 10 s, relative to the largest sums of
-/// their absolute parts.
+/// Largest relative changes of momentum and angular momentum within 10 s.
 fn changes(number: u64) -> (Fx, Fx) {
     let (mut world, kind) = pair(number);
     let start = Momentum::of(&world);
@@ -212,7 +210,7 @@ fn changes(number: u64) -> (Fx, Fx) {
     (relative(worst.linear.x, worst.linear_size), relative(worst.angular, worst.angular_size))
 }
 
-/// Hinges and rigid welds, which are solved in batches, are not among these joints.
+/// Hinges and rigid welds are solved in batches and not among these joints.
 #[test]
 fn a_joint_between_free_bodies_keeps_their_momentum() {
     sweep::for_each((0..sweep::size(1000, 250)).collect(), |number| {
@@ -223,8 +221,7 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// A friction joint between two balls side by side cannot hold up the higher one: the force would also turn the lower
-/// one, and nothing bears that torque.
+/// Holding up the higher of two balls would also turn the lower one, and nothing bears that torque.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -232,7 +229,7 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
             let mut world = World::default();
             let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid"));
             world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
-            // The density gives each ball a mass of 1 kg.
+            // 1 kg each.
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).density(fx!(1.2732));
             let low = BodyDef::dynamic().position((fx!(0), fx!(0.5) + fall));
             let high = BodyDef::dynamic().position((apart, fx!(3)));
@@ -250,8 +247,7 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
     }
 }
 
-/// A friction joint to a fixed body holds a weight of 10 N if its largest force suffices. Otherwise the body falls with
-/// the remaining acceleration.
+/// A weight of 10 N is held if the force suffices. Otherwise it falls with the remaining acceleration.
 #[test]
 fn friction_holds_a_falling_body_only_if_it_suffices() {
     for (force, falls) in [(fx!(9.5), true), (fx!(10.5), false)] {
@@ -264,14 +260,13 @@ fn friction_holds_a_falling_body_only_if_it_suffices() {
         for _ in 0..120 {
             world.step();
         }
-        // The body falls by 1 m: 0.5 m/s² for 2 s.
+        // 0.5 m/s² for 2 s.
         let expected = if falls { fx!(-1) } else { fx!(0) };
         let y = world.body(body).expect("there").position().y;
         assert!((y - expected).abs() < fx!(0.01), "{force} N: at {y} m");
     }
 }
 
-/// A motor of unlimited force comes to rest at the limit of its joint, and does not push the body beyond it.
 #[test]
 fn an_unlimited_motor_rests_at_the_limit_of_its_joint() {
     let slider = Prismatic::new().limit(fx!(-1), fx!(1)).motor(fx!(2), Fx::MAX);

@@ -9,7 +9,7 @@ fn up() -> Angle {
     Angle::from_degrees(fx!(90))
 }
 
-/// Returns platforms whose tops are at height 0.
+/// Tops are at height 0.
 fn platforms() -> [ShapeDef; 3] {
     let slab =
         |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset((fx!(0), -half));
@@ -37,12 +37,12 @@ fn height(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").position().y
 }
 
-/// Bodies jump from 3 m below, fast enough to get through (10 m/s reach 5 m) or only half-way.
+/// From 3 m below, through (10 m/s reach 5 m) or half-way.
 #[test]
 fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
     for platform in platforms() {
         for (name, shape) in movers() {
-            // 7.7 m/s reach 0 m from -3 m: the centre is then level with the top.
+            // 7.7 m/s reach 0 m from -3 m: the centre is level with the top.
             for (speed, lands) in [(fx!(10), true), (fx!(30), true), (fx!(7.75), false), (fx!(6.9), false)] {
                 let mut world = World::default();
                 world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
@@ -103,7 +103,6 @@ fn it_holds_what_falls_on_it_and_a_pile_on_top() {
     }
 }
 
-/// Shapes that slide from one platform to the next stay on top.
 #[test]
 fn flush_platforms_carry_over_their_seams() {
     for (name, shape) in movers() {
@@ -122,7 +121,7 @@ fn flush_platforms_carry_over_their_seams() {
     }
 }
 
-/// The direction rotates with the body: a platform on its side is a door that lets bodies pass to the left.
+/// A platform on its side is a door to the left.
 #[test]
 fn the_direction_belongs_to_the_body() {
     let platform = platforms()[0];
@@ -141,7 +140,7 @@ fn the_direction_belongs_to_the_body() {
     }
 }
 
-/// A restored world still has the pairs of which one shape is passing through a platform.
+/// A restored world keeps the pairs that are passing.
 #[test]
 fn passing_survives_a_snapshot() {
     let mut world = World::default();

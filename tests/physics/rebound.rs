@@ -1,4 +1,4 @@
-//! A bouncing ball: restitution `e` returns a fraction `e` of the speed, so `e^2` of the height.
+//! Restitution `e` returns a fraction `e` of the speed, so `e^2` of the height.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -7,13 +7,11 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Drops a ball of restitution `e` from a height and returns the heights of its rebounds: the highest positions of the
-/// ball's lowest point between two impacts.
+/// Drops a ball, and returns the highest positions of its lowest point between impacts.
 fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     rebounds_above(e, None, height, ticks)
 }
 
-/// Like [`rebounds`], for a ball with a restitution threshold.
 fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<Fx> {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
@@ -40,8 +38,8 @@ fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<F
     heights
 }
 
-/// A rebound reaches `e^2 H`. In a sub-step a body moves with the velocity at the middle of the sub-step, so its
-/// highest position is up to `g h^2 / 8` above the top of the parabola. Positions are read only at ticks.
+/// `e^2 H`. A body moves with the velocity at the middle of a sub-step, up to `g h^2 / 8` above the parabola. Positions
+/// are read at ticks.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     for (e, height) in [
@@ -64,10 +62,10 @@ fn a_rebound_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Largest height in metres of the top of a rebound above the position at the nearest tick: `g dt^2 / 8`.
+/// Largest height in metres of the top above the nearest tick: `g dt^2 / 8`.
 const BETWEEN_TICKS: Fx = fx!(0.00035);
 
-/// Largest height in metres of a position above the top of the parabola, in a sub-step `h`: `g h^2 / 8`.
+/// Largest height in metres above the parabola: `g h^2 / 8`.
 const ABOVE_THE_TOP: Fx = fx!(0.000022);
 
 #[test]
@@ -87,7 +85,7 @@ fn no_rebound_is_higher_than_the_one_before() {
     }
 }
 
-/// A box that lands flat bounces flat, at a fraction `e` of its speed: its two contact points bounce together.
+/// Both contact points bounce together.
 #[test]
 fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
     for (half_width, half_height) in [(fx!(0.3), fx!(0.8)), (fx!(0.5), fx!(0.5)), (fx!(1), fx!(0.2))] {
@@ -108,7 +106,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
                     highest = highest.max(body.position().y - half_height);
                 }
                 let spin = body.angular_velocity().abs();
-                // At its second impact, after tick 70 or later, the box may be slightly tilted.
+                // The second impact, after tick 70 or later, may be slightly tilted.
                 let bound = if tick < 70 { fx!(0.02) } else { fx!(0.2) };
                 assert!(spin < bound, "{half_width} x {half_height}, e {e}, tick {tick}: {spin} rad/s");
             }
@@ -119,8 +117,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
     }
 }
 
-/// A box that lands a little tilted bounces flat as well, whether both corners hit in the same sub-step or not: a
-/// corner within 5 mm of the floor bounces together with the corner that hits.
+/// A corner within 5 mm of the floor bounces together with the corner that hits.
 #[test]
 fn a_box_that_lands_almost_flat_does_not_spin() {
     let boxes = [(fx!(0.3), fx!(0.8)), (fx!(0.5), fx!(0.5)), (fx!(1), fx!(0.2))].into_iter();
@@ -133,7 +130,6 @@ fn a_box_that_lands_almost_flat_does_not_spin() {
             let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
             world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
             let shape = Polygon::rectangle(half_width, half_height).expect("valid");
-            // One corner is 4 mm above the other.
             let tilt = Angle::from_radians(fx_div(fx!(0.002), half_width).expect("not zero"));
             let above = half_height + fx!(0.5) + fx!(0.003) * height;
             let def = BodyDef::dynamic().position((fx!(0), above)).angle(tilt);
@@ -159,8 +155,7 @@ fn the_threshold_of_the_world_is_the_default_of_a_material() {
     }
 }
 
-/// A ball bounces if its speed is at or above the threshold, and does not bounce at a lower speed. If a ball and a
-/// floor have different thresholds, the smaller one applies.
+/// A ball bounces at or above the threshold. Of two thresholds, the smaller one applies.
 #[test]
 fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     let speed = fx!(0.5);
@@ -181,7 +176,7 @@ fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     }
 }
 
-/// Returns the speed of a ball of restitution 1 in m/s, a second after it has hit a floor without gravity.
+/// In m/s, for restitution 1, a second after the impact, without gravity.
 fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");
@@ -198,7 +193,7 @@ fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     world.body(ball).expect("still there").velocity().y
 }
 
-/// Between two walls without gravity a ball of restitution 1 and threshold 0 keeps its speed for 100 s.
+/// Between two walls for 100 s.
 #[test]
 fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.9), fx!(1.1), fx!(2)] {
@@ -219,7 +214,7 @@ fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     }
 }
 
-/// A ball of restitution 1 that hits the floor at 0.05 to 20 m/s rebounds to the height from which it fell, for 100 s.
+/// At 0.05 to 20 m/s, for 100 s.
 #[test]
 fn elastic_falls_rebound_to_the_same_height() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.5), fx!(0.9), fx!(1.1), fx!(2), fx!(10), fx!(20)] {
@@ -235,8 +230,7 @@ fn elastic_falls_rebound_to_the_same_height() {
     }
 }
 
-/// A bumper without gravity: a ball or a flat box leaves it at `e` times its speed, as long as the change of velocity
-/// is below 511 m/s, the limit of an impulse.
+/// Without gravity, `e` times the speed, while the change of velocity is below 511 m/s, the limit of an impulse.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
@@ -260,8 +254,8 @@ fn a_bumper_returns_more_than_the_speed() {
     }
 }
 
-/// Two bumpers that meet head on at the speed limit: `e` times their closing speed exceeds the format of speeds. The
-/// change of velocity is clamped, which counts as a fault, and never wraps around.
+/// `e` times the closing speed exceeds the format of speeds. The change of velocity is clamped, which counts as a
+/// fault, and does not wrap around.
 #[test]
 fn bumpers_at_the_speed_limit_part() {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");

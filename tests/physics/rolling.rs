@@ -1,5 +1,5 @@
-//! Balls that roll on a plane or on a level chain keep their speed at any tick rate. Balls that roll over flush blocks
-//! lose a part of it, and do not stop.
+//! On a plane or a level chain, rolling balls keep their speed at any tick rate. On flush blocks they lose a part of
+//! it.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, World};
 
 const RATES: [u32; 3] = [60, 120, 240];
 
-/// The speed of a ball of radius 0.5 m that has rolled at `speed` m/s for 16 seconds.
+/// A ball of radius 0.5 m, after 16 seconds.
 fn speed_after(rate: u32, speed: Fx, start: Fx, spawn_ground: impl FnOnce(&mut World)) -> Fx {
     let config = Config { tick_rate: rate, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");
@@ -44,8 +44,7 @@ fn a_ball_keeps_its_speed_on_a_plane_and_on_a_chain() {
     }
 }
 
-/// At a seam the ball stands on two blocks for a moment, and the corner of the block ahead takes over its weight. The
-/// ball loses a part of its speed there, and never stops.
+/// At a seam the corner of the block ahead takes over the weight, which costs some speed.
 #[test]
 fn a_ball_rolls_over_flush_blocks() {
     for rate in RATES {

@@ -1,7 +1,7 @@
-//! Stacks of boxes of any size are as firm as stacks of boxes of 1 m, with the settings of `Config::for_smallest`.
+//! With `Config::for_smallest`, stacks of boxes of any size are as firm as stacks of boxes of 1 m.
 //!
-//! A contact yields in proportion to `g / omega^2` for each body that it carries, whatever the size is. The table in
-//! the documentation of `Config` lists the settings for each size; the first test compares its rows.
+//! A contact yields in proportion to `g / omega^2` for each body that it carries. The documentation of `Config` has a
+//! table of settings.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ use lockstep2d::math::{Fx, Rng, Vec2, fx_div, fx_mul};
 use lockstep2d::solver::ContactTuning;
 use lockstep2d::world::{Config, World};
 
-/// A world with a floor below a height of 0, and boxes of one size.
+/// A floor below height 0, and boxes of one size.
 struct Floor {
     world: World,
     size: Fx,
@@ -23,14 +23,14 @@ impl Floor {
         Floor { world, size }
     }
 
-    /// Adds a box whose centre is at a position in units of its size.
+    /// The position is in units of the size.
     fn add(&mut self, x: Fx, y: Fx) -> BodyId {
         let shape = ShapeDef::new(Polygon::square(self.size / 2).expect("valid"));
         let position = Vec2::new(fx_mul(x, self.size), fx_mul(y, self.size));
         self.world.spawn(&BodyDef::dynamic().position(position), &[shape]).expect("valid")
     }
 
-    /// Returns the position of a box in units of its size.
+    /// In units of the size.
     fn place(&self, id: BodyId) -> Vec2<Fx> {
         let at = self.world.body(id).expect("there").position();
         let units = |x: Fx| fx_div(x, self.size).expect("positive");
@@ -49,8 +49,7 @@ impl Floor {
     }
 }
 
-/// Returns how far the top box of a stack of 8 is below its place in a rigid stack after 10 s, in units of a box. The
-/// boxes start with gaps of 1 % of their size.
+/// Sinking of the top of 8 boxes in 10 s, in units of a box, with gaps of 1 % at the start.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();
@@ -59,9 +58,8 @@ fn sink(config: Config, size: Fx) -> Fx {
     fx!(7.5) - floor.place(boxes[7]).y
 }
 
-/// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest without losing their
-/// form. Small boxes fall asleep after the same half second as large ones, but sway more often in that time: in the end
-/// a column of boxes of 1 cm leans by 0.11 of a box, a column of boxes of 1 m by 0.002 of a box.
+/// A column of 20 boxes with offsets of 1 %, and a pyramid of 10 rows. Small boxes sway more often in the half second
+/// until they sleep: a column of boxes of 1 cm leans by 0.11 of a box in the end, of 1 m by 0.002.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);
@@ -83,7 +81,7 @@ fn check_piles(config: Config, size: Fx) {
     assert!(floor.is_asleep() && top > fx!(9.4), "{size} m: the top of a pyramid is at {top}");
 }
 
-/// Each row contains a size of the smallest box, and the settings that the documentation of `Config` lists for it.
+/// The table in the documentation of `Config`.
 #[test]
 fn the_settings_of_each_size_are_those_of_the_table() {
     for (size, sub_steps, stiffness, distance) in [
@@ -108,14 +106,14 @@ fn stacks_of_any_size_sink_by_at_most_a_fortieth_of_a_box() {
         let sunk = sink(Config::default().for_smallest(size), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box");
     }
-    // Boxes of 0.9 m and more need no settings other than the defaults.
+    // 0.9 m and more need no other settings than the defaults.
     for size in [fx!(10), fx!(1), fx!(0.9)] {
         let sunk = sink(Config::default(), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box at defaults");
     }
 }
 
-/// The settings depend on the ratio of gravity to size, and on the number of sub-steps per second.
+/// The ratio of gravity to size, and the sub-steps per second, matter.
 #[test]
 fn settings_for_small_bodies_follow_gravity_and_tick_rate() {
     let moon = Config { gravity: Vec2::new(fx!(0), fx!(-1.62)), ..Config::default() };
@@ -128,7 +126,6 @@ fn settings_for_small_bodies_follow_gravity_and_tick_rate() {
         let sunk = sink(config.for_smallest(size), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box");
     }
-    // Without gravity nothing sinks.
     let above = Config { gravity: Vec2::ZERO, ..Config::default() };
     assert_eq!(above.for_smallest(fx!(0.01)).solver, above.solver);
 }

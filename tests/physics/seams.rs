@@ -1,5 +1,4 @@
-//! Shapes that slide or roll over flush blocks have no ghost collisions at the seams, although each pair of shapes is
-//! solved separately.
+//! No ghost collisions at the seams of flush blocks, although each pair of shapes is solved separately.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -15,7 +14,7 @@ enum Ground {
     Segments,
 }
 
-/// Spawns a thousand blocks of half a metre, or segments of that length, with their tops at height 0.
+/// A thousand blocks or segments of half a metre, with tops at height 0.
 fn ground(world: &mut World, ground: Ground) {
     let block = ShapeDef::new(Polygon::square(fx!(0.25)).expect("valid"));
     let x = |i: i32| Fx::from_num(i) / 2 - fx!(5);
@@ -39,7 +38,7 @@ fn ground(world: &mut World, ground: Ground) {
     }
 }
 
-/// Returns the largest vertical speed of a shape that starts to slide at a height, and the distance that it travels.
+/// Largest vertical speed, and distance.
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);
@@ -66,7 +65,7 @@ fn movers() -> [(&'static str, ShapeDef); 4] {
     ]
 }
 
-/// The sweep has 240 cases. Its sample has 36 of them, in which every ground, mover, friction, speed and depth occurs.
+/// The sample of 36 of 240 cases has every ground, mover, friction, speed and depth.
 #[test]
 fn everything_slides_over_flush_blocks() {
     let mut cases = Vec::new();
@@ -88,7 +87,7 @@ fn everything_slides_over_flush_blocks() {
     });
 }
 
-/// Thin plates on a floor still collide, and a box still collides with a step that is not a seam.
+/// Thin plates collide, and a box collides with a step that is no seam.
 #[test]
 fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();

@@ -1,12 +1,11 @@
-//! A box on a slope stays if `tan(angle)` is below the friction coefficient, and otherwise slides with `a = g (sin - mu
-//! cos)`.
+//! A box stays if `tan(angle)` is below the friction coefficient, and otherwise slides with `a = g (sin - mu cos)`.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul, widen};
 use lockstep2d::world::World;
 
-/// Returns the distance that a box slides along a slope in `seconds`, and its final speed.
+/// Distance in `seconds`, and final speed.
 fn slide(degrees: Fx, friction: Fx, seconds: i64, ground: Ground) -> (Fx, Fx) {
     let angle = Angle::from_degrees(degrees);
     let (sin, cos) = (widen(angle.sin()), widen(angle.cos()));
@@ -38,7 +37,6 @@ enum Ground {
 
 #[test]
 fn a_box_stays_below_the_angle_of_friction() {
-    // atan(0.6) is 30.96 degrees.
     for ground in [Ground::Block, Ground::Line] {
         for degrees in [fx!(10), fx!(25), fx!(30.5)] {
             let (distance, speed) = slide(degrees, fx!(0.6), 10, ground);

@@ -5,7 +5,6 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul, widen};
 use lockstep2d::world::World;
 
-/// A world with an inclined fixed ground.
 fn world(angle: Angle, ground: ShapeDef) -> World {
     let mut world = World::default();
     world.spawn(&BodyDef::fixed().angle(angle), &[ground]).expect("valid");
@@ -44,7 +43,7 @@ fn speed(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").velocity().x
 }
 
-/// A disc decelerates by `a = c g / (1 + k^2 / r^2) = 2/3 c g` until it rests.
+/// A disc decelerates by `a = c g / (1 + k^2 / r^2) = 2/3 c g`.
 #[test]
 fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
     for radius in [fx!(0.1), fx!(0.5), fx!(3)] {
@@ -73,12 +72,12 @@ fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
     }
 }
 
-/// A ball stays on a slope if `tan(angle)` is below the rolling resistance.
+/// `tan(angle)` is below the rolling resistance.
 #[test]
 fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     for (degrees, stays) in [(fx!(5), true), (fx!(7), false)] {
         let angle = Angle::from_degrees(degrees);
-        // The resistance of 0.105 lies between tan(5 degrees) = 0.087 and tan(7 degrees) = 0.123.
+        // 0.105 lies between tan(5 degrees) = 0.087 and tan(7 degrees) = 0.123.
         let mut world = world(angle, line());
         let body = launch(
             &mut world,
@@ -95,7 +94,7 @@ fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     }
 }
 
-/// Two touching wheels slow each other down and conserve their total angular momentum.
+/// Total angular momentum is conserved.
 #[test]
 fn resistance_between_two_wheels_is_equal_and_opposite() {
     let mut world =
@@ -119,7 +118,7 @@ fn resistance_between_two_wheels_is_equal_and_opposite() {
     assert!((after[0].1 - after[1].1).abs() < (before[0].1 - before[1].1).abs(), "{before:?} {after:?}");
 }
 
-/// The speed of the box is `v = mu g t` until it reaches the speed of the belt, which it never exceeds.
+/// `v = mu g t` up to the speed of the belt.
 #[test]
 fn a_box_on_a_belt_reaches_its_speed() {
     for ground in [line(), block()] {
@@ -137,7 +136,7 @@ fn a_box_on_a_belt_reaches_its_speed() {
     }
 }
 
-/// On a slope below its angle of friction, a belt carries a box uphill at the speed of the belt.
+/// Below the angle of friction.
 #[test]
 fn a_belt_carries_uphill() {
     let angle = Angle::from_degrees(fx!(20));
@@ -150,8 +149,7 @@ fn a_belt_carries_uphill() {
     assert!(velocity.distance(expected) < fx!(0.001), "{velocity:?}, expected {expected:?}");
 }
 
-/// A ball on a belt finally rolls, `w r = v_belt - v`, and keeps the velocity that it gained while slipping: `v =
-/// v_belt / 3`.
+/// The ball finally rolls, `w r = v_belt - v`, and keeps what it gained while slipping: `v = v_belt / 3`.
 #[test]
 fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     let mut world = world(Angle::ZERO, line().surface_speed(fx!(3)));
@@ -162,8 +160,7 @@ fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     assert!((spin - fx!(4)).abs() < fx!(0.02), "{spin} rad/s");
 }
 
-/// The surface of a belt runs the opposite way on its lower side, which here carries a body that is pressed against it
-/// from below.
+/// A body is pressed against the lower side, which runs the opposite way.
 #[test]
 fn the_lower_side_of_a_belt_runs_back() {
     let mut world =

@@ -1,5 +1,4 @@
-//! Bodies at rest on a kinematic body that turns stay where they are: in its frame the middle of a floor feels no force
-//! along the floor.
+//! In the frame of a turning floor, its middle feels no force along the floor.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, Falloff, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -12,13 +11,13 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Distance in metres of a body from the y axis of another body that is at the origin.
+/// Distance in metres from the y axis of a body at the origin.
 fn drift(world: &World, ground: BodyId, body: BodyId) -> Fx {
     let [ground, body] = [ground, body].map(|id| world.body(id).expect("there"));
     ground.angle().direction().widen().dot(body.position()).abs()
 }
 
-/// If lever arms lagged behind the rotation, the crate of 4 m x 2 m would creep by 0.5 m in 30 s at 0.5 rad/s.
+/// If lever arms lagged behind the rotation, a crate of 4 m x 2 m would creep by 0.5 m in 30 s at 0.5 rad/s.
 #[test]
 fn a_crate_does_not_creep_in_a_centrifuge() {
     let sizes = [(fx!(0.5), fx!(0.25)), (fx!(2), fx!(1)), (fx!(4), fx!(4))];

@@ -1,4 +1,4 @@
-//! Shape casts along floors, casts that turn, and casts that start inside of shapes.
+//! Shape casts along floors, that turn, and that start inside of shapes.
 
 use crate::oracle::along;
 use crate::sweep;
@@ -12,7 +12,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// Shapes with their lowest point at `y = -0.5`.
+/// Lowest point at `y = -0.5`.
 fn shapes() -> [Geometry; 4] {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.2)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     let round = Polygon::rectangle(fx!(0.4), fx!(0.4)).and_then(|polygon| polygon.rounded(fx!(0.1)));
@@ -20,7 +20,7 @@ fn shapes() -> [Geometry; 4] {
     [pill, round.expect("valid").into(), square.into(), Geometry::circle(fx!(0.5)).expect("valid")]
 }
 
-/// Adds a sloping floor of 40 tiles or links of 0.5 m, which extends from the origin to both sides.
+/// A sloping floor of 40 tiles or links of 0.5 m about the origin.
 fn floor(tiles: bool, slope: Angle, world: &mut World) {
     let turn = Rot::from_angle(slope);
     if tiles {
@@ -35,8 +35,7 @@ fn floor(tiles: bool, slope: Angle, world: &mut World) {
     }
 }
 
-/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, or 0.3 mm above it, is cast along the floor: the
-/// cast passes the seams, and stops at a ledge of 1 cm.
+/// A shape up to 5 mm deep in a floor, as bodies rest, or 0.3 mm above it passes seams, and stops at a ledge of 1 cm.
 #[test]
 fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     let mut rng = Rng::new(1);
@@ -72,8 +71,7 @@ fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     assert!(ledges > 1000);
 }
 
-/// A cast between a floor and a ceiling that both touch the shape passes the seams of both, and stops at a ledge of
-/// 2 mm.
+/// Between a floor and a ceiling that both touch the shape. Stops at a ledge of 2 mm.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     let mut rng = Rng::new(2);
@@ -102,8 +100,7 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
-/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. If a cast first pushed the
-/// shape out of the floor or the ceiling, the shape would start up to 1 cm further away from the ramp.
+/// If a cast first pushed the shape out of the floor or the ceiling, it would start up to 1 cm further from the ramp.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     for upside_down in [false, true] {
@@ -131,7 +128,7 @@ fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     }
 }
 
-/// Every box of a pile that has fallen asleep can be cast to either side. The boxes are tilted by microradians.
+/// The boxes of a sleeping pile are tilted by microradians.
 #[test]
 fn casts_of_the_boxes_of_a_pile_pass_the_boxes_above_and_below() {
     let mut world = World::default();
@@ -175,13 +172,13 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
             true => world.cast_shape(&probe, way, filter),
             false => world.cast_turning(&probe, way, turns, filter),
         };
-        // The cast leaves the near wall, and stops at the far wall.
+        // Leaves the near wall, and stops at the far wall.
         let hit = cast(way, resist).expect("the far wall");
         assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
         let hit = cast(way, report).expect("the near wall");
         assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
         assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
-        // A cast that would go deeper into the near wall hits this wall at once.
+        // Would go deeper into the near wall.
         let hit = cast(-way, resist).expect("the near wall");
         assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
         assert_eq!(cast(-way, ignore), None);
@@ -214,7 +211,7 @@ fn queries_leave_out_several_bodies() {
     assert_eq!(QueryFilter::default().except_all(&bodies[..9]), None);
 }
 
-/// A random geometry, not centred on its position.
+/// Not centred on its position.
 pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
     loop {
         let mut vector = || at(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
@@ -233,7 +230,7 @@ pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Compares casts that turn with many small steps: nothing is touched before the hit, and the hit is within the skin.
+/// Compared with many small steps: nothing is touched before the hit.
 #[test]
 fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     let mut rng = Rng::new(5);
@@ -280,8 +277,8 @@ fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 100, "{hits} {misses}");
 }
 
-/// A time-of-impact search that gives up may report its shape too early. Which shape is hit first must still not depend
-/// on the order in which the broad phase visits the shapes.
+/// A time-of-impact search that gives up may report a shape too early. The first hit must not depend on the order of
+/// the broad phase.
 #[test]
 fn turning_casts_do_not_depend_on_the_broad_phase() {
     let mut rng = Rng::new(17);

@@ -1,5 +1,4 @@
-//! A world with random changes: bodies of all kinds and their shapes are created, destroyed, moved, changed and put to
-//! sleep.
+//! A world with random changes.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, Chain, Filter, Geometry, Polygon, ShapeDef, ShapeId, WorldError,
@@ -11,7 +10,6 @@ use lockstep2d::world::World;
 pub(crate) struct Churn {
     pub(crate) world: World,
     pub(crate) rng: Rng,
-    /// Centre of the region in which bodies are placed.
     pub(crate) centre: Vec2<Fx>,
     bodies: Vec<BodyId>,
 }
@@ -68,7 +66,6 @@ impl Churn {
         if self.rng.chance(1, 6) { shape.sensor() } else { shape }
     }
 
-    /// Applies a random change, which may be refused.
     pub(crate) fn change(&mut self) {
         let outcome = self.try_change();
         let allowed = |error: &WorldError| {
@@ -104,7 +101,7 @@ impl Churn {
                 let shape = self.shape();
                 self.world.add_shape(id, &shape).map(|_| ())
             }
-            // Every body keeps at least one shape, so that queries find it.
+            // A body keeps a shape, so that queries find it.
             7 if self.world.body(id).expect("alive").shapes().len() < 2 => Ok(()),
             7 => shape.map_or(Ok(()), |shape| self.world.remove_shape(shape)),
             8 => {
@@ -149,7 +146,7 @@ impl Churn {
     }
 }
 
-/// Returns point `i` of a hilly line from right to left.
+/// A point of a hilly line from right to left.
 fn across(i: usize, height: Fx) -> Vec2<Fx> {
     Vec2::new(fx!(11) - Fx::from_num(i) * 2, height)
 }

@@ -1,5 +1,4 @@
-//! Queries agree with a brute-force oracle, in the documented order and with every broad phase, in a world that changes
-//! randomly, both at the origin and far away.
+//! Queries agree with a brute-force oracle and with every broad phase in a changing world, at the origin and far away.
 
 mod casts;
 mod churn;
@@ -16,7 +15,6 @@ use lockstep2d::world::{CastHit, ClosestPoints, Probe, QueryFilter, RayHit, Worl
 use lockstep2d_tests::sweep;
 use oracle::{Solid, TOLERANCE, along, seen};
 
-/// A query with its parameters.
 #[derive(Clone, Copy, Debug)]
 enum Query {
     Ray { origin: Vec2<Fx>, translation: Vec2<Fx> },
@@ -76,7 +74,7 @@ fn random_filter(churn: &mut Churn) -> QueryFilter {
     QueryFilter { mask, sensors: churn.rng.chance(1, 2), except, ..QueryFilter::default() }
 }
 
-/// Returns copies of a world with different broad phases or caches.
+/// Copies with different broad phases or caches.
 fn twins(world: &World) -> Vec<World> {
     let with = |kind| {
         let mut twin = world.clone();
@@ -94,7 +92,7 @@ fn twins(world: &World) -> Vec<World> {
     ]
 }
 
-/// Numbers of queries, of non-empty results, and of rays and casts that were checked against the oracle.
+/// Queries, non-empty results, and rays and casts checked by the oracle.
 #[derive(Default, Debug)]
 struct Tally {
     queries: u32,
@@ -174,8 +172,7 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
     }
 }
 
-/// A list must contain all shapes that overlap and no others, in slot order. Shapes within the tolerance of touching
-/// are not checked.
+/// All shapes that overlap, in slot order. Shapes within the tolerance of touching are not checked.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],
@@ -205,7 +202,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let hit = all.iter().find(|hit| hit.shape == solid.id);
     tally.rays += 1;
     let Some(hit) = hit else {
-        // The oracle counts a miss by less than the tolerance as a hit.
+        // The oracle counts a near miss as a hit.
         let Some(reached) = traced else { return };
         for i in 0..=64 {
             let point = along(origin, translation, (reached + fx!(0.00001) * i).min(translation.length()));
@@ -250,8 +247,7 @@ fn check_cast(
     for _ in 0..100 {
         let free = gap(way).expect("solids") - skin;
         if free < fx!(0.000001) {
-            // The oracle stops here: the probe touches a shape or passes very close to one. A miss is not judged in
-            // this case.
+            // The probe touches a shape or passes very close. A miss is not judged.
             tally.casts += u32::from(hit.is_some());
             break;
         }
@@ -286,7 +282,7 @@ fn queries_are_as_exact_far_from_the_origin() {
     }
 }
 
-/// Coincident shapes are hit at the same fraction: the shape in the lowest slot is returned.
+/// The lowest slot is returned.
 #[test]
 fn of_equals_the_first_slot_is_found() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -311,7 +307,7 @@ fn of_equals_the_first_slot_is_found() {
     assert!(ray.len() == 20 && ray.iter().all(|hit| hit.fraction == 0 && hit.normal == Vec2::ZERO));
 }
 
-/// For a one-sided link, the position of the probe's shape decides the side, not the origin of the probe.
+/// The position of the shape decides the side of a one-sided link, not the probe's origin.
 #[test]
 fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     use lockstep2d::body::{BodyDef, Chain, Geometry};

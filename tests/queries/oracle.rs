@@ -1,12 +1,11 @@
-//! Brute-force oracle: shapes as their corners in world coordinates and a radius, evaluated only with predicates of
-//! `math`.
+//! Shapes as corners in world coordinates and a radius.
 
 use lockstep2d::body::{Geometry, ShapeId, Sides};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2, closest_point_on_segment, point_in_polygon};
 use lockstep2d::world::{QueryFilter, World};
 
-/// Error of rounded corners in the library, in metres.
+/// Error of rounded corners in metres.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
 pub(crate) struct Solid {
@@ -33,7 +32,7 @@ impl Solid {
         Solid { id, corners, radius, one_sided }
     }
 
-    /// Returns the distance from a point in metres; negative inside.
+    /// In metres; negative inside.
     pub(crate) fn distance(&self, point: Vec2<Fx>) -> Fx {
         let next = self.corners.iter().cycle().skip(1);
         let edges = self.corners.iter().zip(next);
@@ -43,7 +42,7 @@ impl Solid {
         (if inside { -nearest } else { nearest }) - self.radius
     }
 
-    /// Returns how far along a ray the surface is, by sphere tracing: `Some(None)` for a miss, `None` if undecided.
+    /// Distance along a ray by sphere tracing: `Some(None)` for a miss, `None` if undecided.
     pub(crate) fn trace(&self, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<Option<Fx>> {
         let length = translation.length();
         let mut way = Fx::ZERO;
@@ -61,13 +60,12 @@ impl Solid {
     }
 }
 
-/// Returns the point at a distance along a ray.
 pub(crate) fn along(origin: Vec2<Fx>, translation: Vec2<Fx>, way: Fx) -> Vec2<Fx> {
     let fraction = lockstep2d::math::fx_div(way, translation.length()).unwrap_or(Fx::ZERO);
     origin + translation.scale(fraction)
 }
 
-/// Returns the shapes that pass a query's filter, in slot order.
+/// Shapes that pass a filter, in slot order.
 pub(crate) fn seen(world: &World, filter: QueryFilter) -> Vec<Solid> {
     let sees = |id: ShapeId| {
         let shape = world.shape(id).expect("there");

@@ -1,4 +1,4 @@
-//! Queries of single shapes agree with brute force over corners and edges.
+//! Queries of single shapes agree with brute force.
 
 use crate::casts::random_geometry;
 use crate::sweep;
@@ -10,7 +10,7 @@ use lockstep2d::math::{
 };
 use lockstep2d::world::{Displacement, Probe, TimeOfImpact, World};
 
-/// Outline of a shape: corners in world coordinates, and a radius.
+/// Corners in world coordinates, and a radius.
 struct Outline {
     corners: Vec<Vec2<Fx>>,
     radius: Fx,
@@ -35,19 +35,19 @@ impl Outline {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 
-    /// Whether a point is inside the polygon of the corners, without the radius.
+    /// Without the radius.
     fn holds(&self, point: Vec2<Fx>) -> bool {
         self.corners.len() > 2 && point_in_polygon(&self.corners, point)
     }
 
-    /// Returns the distance of a point in metres; negative inside.
+    /// In metres; negative inside.
     fn gap_to(&self, point: Vec2<Fx>) -> Fx {
         let nearest = self.edges().map(|(a, b)| closest_point_on_segment(point, a, b).distance(point)).min();
         let nearest = nearest.expect("corners");
         (if self.holds(point) { -nearest } else { nearest }) - self.radius
     }
 
-    /// Returns the distance of another outline in metres; `None` if the polygons of the corners overlap.
+    /// In metres; `None` if the polygons overlap.
     fn distance(&self, other: &Outline) -> Option<Fx> {
         if self.holds(other.corners[0]) || other.holds(self.corners[0]) {
             return None;
@@ -66,7 +66,6 @@ impl Outline {
     }
 }
 
-/// A random probe, with its geometry, position and angle.
 struct Sample {
     geometry: Geometry,
     position: Vec2<Fx>,
@@ -93,12 +92,11 @@ impl Sample {
     }
 }
 
-/// The origin, or a place far away.
 fn origin(case: u32) -> Vec2<Fx> {
     if case.is_multiple_of(2) { Vec2::ZERO } else { Vec2::new(fx!(1000000000), fx!(-999999999.125)) }
 }
 
-/// Error of rotated corners in the library, in metres.
+/// Error of rotated corners in metres.
 const TOLERANCE: Fx = fx!(0.000002);
 
 #[test]
@@ -136,7 +134,7 @@ fn distances_overlaps_and_manifolds_are_those_of_brute_force() {
             (_, None) => assert!(lines || expected.is_some_and(|gap| gap > fx!(0.04999)), "{expected:?}"),
             (Some(gap), Some(deepest)) => {
                 touching += 1;
-                // Edges that are nearly parallel count as faces, with an error of up to half a millimetre.
+                // Nearly parallel edges count as faces, with an error of up to half a millimetre.
                 assert!((gap - deepest).abs() < fx!(0.000502) || gap < fx!(0.0005), "{gap} {deepest}");
             }
             (None, Some(deepest)) => assert!(deepest < fx!(0.0006), "{deepest}"),
@@ -165,7 +163,7 @@ fn rays_and_points_are_those_of_brute_force() {
             assert!(hit.starts_inside && hit.fraction == 0 && hit.point == from, "{hit:?}");
             continue;
         }
-        // Sphere tracing never passes the surface.
+        // Sphere tracing does not pass the surface.
         let length = translation.length();
         let mut way = Fx::ZERO;
         for _ in 0..300 {
@@ -236,7 +234,7 @@ fn times_of_impact_are_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 300 && overlaps > 100, "{hits} {misses} {overlaps}");
 }
 
-/// A shape of the world gives the same answers as a probe with its geometry and pose.
+/// A shape of the world answers like a probe with its geometry and pose.
 #[test]
 fn a_probe_of_a_shape_is_at_its_pose() {
     let mut rng = Rng::new(4);

@@ -1,4 +1,4 @@
-//! Invalid changes to existing bodies, shapes and joints are refused with a typed error, and the world keeps its hash.
+//! Invalid changes are refused, and the world keeps its hash.
 
 use lockstep2d::body::{Area, BodyDef, BodyKind, BodySettings, MassSource, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -78,7 +78,7 @@ fn what_a_kind_of_body_cannot_do_is_refused() {
     for body in [floor, lift] {
         stage.refuses(Command::Sleep { body }, wrong_kind);
     }
-    // The first target is 1 km away, too far for one tick. The second one is outside the world.
+    // Too far for one tick, and outside the world.
     let position = Vec2::new(fx!(1000), fx!(0));
     stage.refuses(Command::MoveTo { body: lift, position, angle }, fast);
     stage.refuses(Command::MoveTo { body: lift, position: Vec2::new(Fx::MIN, Fx::MAX), angle }, far);
@@ -135,7 +135,7 @@ fn changes_to_shapes_out_of_range_are_refused() {
     }
     let point = lockstep2d::body::Geometry::Capsule { a: Vec2::ZERO, b: Vec2::ZERO, radius: fx!(1) };
     stage.refuses(set(ShapeDef { geometry: point, ..old }), |error| matches!(error, WorldError::Geometry(_)));
-    // A spinning ball must not grow to a radius of 100 m, as its speed would exceed the limit.
+    // The speed of a spinning ball with a radius of 100 m would exceed the limit.
     stage.world.set_velocity(stage.ball, Vec2::ZERO, fx!(50)).expect("valid");
     let large = lockstep2d::body::Geometry::Circle { radius: fx!(100) };
     stage.refuses(set(ShapeDef { geometry: large, ..old }), fast);
@@ -183,7 +183,7 @@ fn changes_to_joints_out_of_range_are_refused() {
     stage.refuses(Command::DisableJoint { joint }, stale);
 }
 
-/// A command for many bodies or joints adds none of them if any one is refused.
+/// If one is refused, none is added.
 #[test]
 fn one_of_many_refuses_all() {
     let mut stage = Stage::new();

@@ -18,7 +18,7 @@ fn ball() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"))
 }
 
-/// A world with a fixed floor, a kinematic lift, a ball, and a stale handle of a removed ball.
+/// A fixed floor, a kinematic lift, a ball, and a stale handle.
 struct Stage {
     world: World,
     floor: lockstep2d::body::BodyId,
@@ -41,7 +41,7 @@ impl Stage {
         Stage { world, floor, lift, ball, gone }
     }
 
-    /// Expects a command to be refused with a matching error, without any effect on the state or on the following tick.
+    /// A refused command affects neither the state nor the next tick.
     fn refuses(&mut self, command: Command, matches: impl Fn(&WorldError) -> bool) {
         let before = self.world.state_hash();
         let mut unasked = self.world.clone();
@@ -115,7 +115,7 @@ fn bodies_out_of_range_are_refused() {
     let gyration = |error: &WorldError| matches!(error, WorldError::GyrationOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic().mass(given(fx!(1), fx!(0))), ball()), gyration);
     stage.refuses(spawn(BodyDef::dynamic().mass(given(fx!(1), Fx::MAX)), ball()), gyration);
-    // The fields are public, so a command can contain a shape that its constructor refuses.
+    // A command can contain a shape that its constructor refuses.
     let flat = ShapeDef { geometry: Geometry::Circle { radius: fx!(0) }, ..ball() };
     stage.refuses(spawn(BodyDef::dynamic(), flat), |error| matches!(error, WorldError::Geometry(_)));
 }
@@ -330,8 +330,7 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     let plank = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid"));
     stage.refuses(spawn(BodyDef::dynamic(), plank.offset((fx!(60), fx!(0)))), reach);
     stage.refuses(Command::AddShape { body: ball, shape: plank.offset((fx!(0), fx!(128))) }, reach);
-    // 50 rad/s are 18 m/s at the ball's radius of gyration of 0.35 m, but 1500 m/s at the radius of gyration of 30 m
-    // that the body has together with a second ball 60 m away.
+    // 50 rad/s are 18 m/s at a radius of gyration of 0.35 m, but 1500 m/s at 30 m, with a second ball 60 m away.
     stage.world.set_velocity(ball, Vec2::ZERO, fx!(50)).expect("valid");
     let arm = self::ball().offset((fx!(60), fx!(0))).density(fx!(1));
     stage.refuses(Command::AddShape { body: ball, shape: arm }, |error| {
@@ -342,7 +341,6 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     });
 }
 
-/// A kinematic body keeps its angular velocity when a shape is attached.
 #[test]
 fn a_shape_does_not_change_how_a_kinematic_body_turns() {
     let mut stage = Stage::new();

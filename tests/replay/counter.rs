@@ -1,4 +1,4 @@
-//! A minimal game: two players add to a sum.
+//! Two players add to a sum.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Setup {
-    /// The sum at the start, at most 1000.
+    /// At most 1000.
     pub(crate) start: i32,
-    /// A text that the rules ignore.
+    /// Ignored by the rules.
     pub(crate) label: String,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Input {
     pub(crate) add: i8,
-    /// A flag that the rules ignore.
+    /// Ignored by the rules.
     pub(crate) wink: bool,
-    /// Not encoded: 0 in every decoded input.
+    /// 0 in every decoded input.
     #[serde(skip)]
     pub(crate) mood: u8,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Input {
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,
-    /// Sum of `Input::mood`. Greater than 0 only if the game is stepped with inputs that were not decoded.
+    /// Greater than 0 if inputs were not decoded.
     pub(crate) moods: u64,
 }
 
@@ -72,7 +72,7 @@ impl Game for Counter {
         *self = save.clone();
     }
 
-    /// Returns one unit, plus the magnitudes of the numbers that the players add.
+    /// One unit, plus the magnitudes of the added numbers.
     fn work(&self, inputs: &[Input]) -> u64 {
         1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
     }
@@ -82,7 +82,7 @@ impl Game for Counter {
     }
 }
 
-/// Methods of a game that delegates them to the counter in its field `$counter` and implements the others itself.
+/// Delegates to the counter in the field `$counter`.
 macro_rules! like_its_counter {
     ($counter:tt) => {
         fn players(&self) -> u32 {
@@ -120,7 +120,7 @@ pub(crate) fn add(first: i8, second: i8) -> [Input; 2] {
     [Input { add: first, ..Input::default() }, Input { add: second, ..Input::default() }]
 }
 
-/// Returns inputs that change every few ticks and stay the same in between.
+/// Inputs change every few ticks.
 pub(crate) fn inputs_at(tick: u64) -> [Input; 2] {
     let step = i8::try_from(tick / 5 % 7).unwrap() - 3;
     let mut inputs = add(step, 1);

@@ -1,5 +1,5 @@
-//! A forger: splits a replay as `docs/FORMAT.md` specifies, without the library, and reassembles it with repaired
-//! checksums and chain hash. Checkpoints and the final hash are not repaired, as this requires the game.
+//! Splits a replay as `docs/FORMAT.md` specifies, without the library, and repairs checksums and chain hash.
+//! Checkpoints and the final hash would require the game.
 
 use lockstep2d::hash::StateHash;
 
@@ -7,14 +7,13 @@ pub(crate) const INPUTS: u8 = 1;
 pub(crate) const KEYFRAME: u8 = 2;
 pub(crate) const TRAILER: u8 = 3;
 
-/// Range of the chain hash in the trailer's payload.
+/// Range in the trailer's payload.
 pub(crate) const CHAIN: std::ops::Range<usize> = 24..40;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Forged {
-    /// Header without its checksum.
     pub(crate) header: Vec<u8>,
-    /// Kind and payload of each block.
+    /// Kind and payload.
     pub(crate) blocks: Vec<(u8, Vec<u8>)>,
 }
 
@@ -34,7 +33,7 @@ impl Forged {
         Forged { header, blocks }
     }
 
-    /// Returns the file with every checksum and the chain hash repaired.
+    /// With every checksum and the chain hash repaired.
     pub(crate) fn put_together(&self) -> Vec<u8> {
         let mut file = self.header.clone();
         let mut chain = StateHash::of_bytes(&file).0;
@@ -54,7 +53,6 @@ impl Forged {
         file
     }
 
-    /// Returns the payload of block number `index`.
     pub(crate) fn payload(&mut self, index: usize) -> &mut Vec<u8> {
         &mut self.blocks[index].1
     }
@@ -63,13 +61,12 @@ impl Forged {
         &mut self.blocks.last_mut().unwrap().1
     }
 
-    /// Makes the trailer state a different number of ticks.
     pub(crate) fn set_ticks(&mut self, ticks: u64) {
         self.trailer()[..8].copy_from_slice(&ticks.to_le_bytes());
     }
 }
 
-/// Returns the file after `change`, with all checksums repaired.
+/// With all checksums repaired.
 pub(crate) fn forge(file: &[u8], change: impl FnOnce(&mut Forged)) -> Vec<u8> {
     let mut forged = Forged::take_apart(file);
     change(&mut forged);

@@ -1,4 +1,4 @@
-//! A recorded replay matches; a truncated or damaged one never does; and the bytes are as `docs/FORMAT.md` specifies.
+//! A recorded replay matches, a damaged one does not, and the bytes are those of `docs/FORMAT.md`.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -7,7 +7,7 @@ use lockstep2d::replay::{Flaw, Limits, Recording, Step, Verdict, VerifiedReplay}
 use crate::counter::{Counter, add, inputs_at, setup};
 use crate::{record, verdict};
 
-/// Returns the state hash after `ticks` ticks, simulated without a replay.
+/// Simulated without a replay.
 fn hash_after(ticks: u64) -> StateHash {
     let mut game = Counter::new(&setup()).unwrap();
     for tick in 0..ticks {
@@ -100,7 +100,7 @@ fn a_replay_can_be_stopped_at_any_tick() {
     assert_eq!(replay.conclude(), Verdict::Incomplete { ticks: 34, hash: hash_after(34) });
 }
 
-/// The worked example of `docs/FORMAT.md` has four ticks of the counter, and a checkpoint every three ticks.
+/// Four ticks of the counter, and a checkpoint every three ticks.
 #[test]
 fn the_bytes_are_those_of_the_document() {
     let mut recording = Recording::<Counter>::start(&setup(), 3).unwrap();
@@ -118,7 +118,7 @@ fn the_bytes_are_those_of_the_document() {
     assert!(verdict(&documented).is_match());
 }
 
-/// Returns the bytes of the document's `hex` block: the digits before each line's `|`.
+/// The digits before each `|` of the document's `hex` block.
 fn example_of(document: &str) -> Vec<u8> {
     let (_, rest) = document.split_once("```hex\n").expect("an example in the document");
     let (block, _) = rest.split_once("```").expect("an end of the example");

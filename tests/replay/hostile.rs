@@ -1,5 +1,4 @@
-//! A forger repairs all checksums but cannot run the game: no forged file matches. Content that no recorder writes is
-//! refused with the right flaw.
+//! No forged file with repaired checksums matches. Content that no recorder writes is refused with the right flaw.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::replay::{
@@ -10,12 +9,12 @@ use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
 use crate::{record, verdict};
 
-/// A replay of three full blocks of ten ticks, a block of five ticks, and the trailer.
+/// Three full blocks of ten ticks, a block of five, and the trailer.
 fn original() -> Vec<u8> {
     record(35, 10, inputs_at)
 }
 
-/// Returns the verdict on the original after a change with repaired checksums.
+/// With repaired checksums.
 fn forged(change: impl FnOnce(&mut Forged)) -> Verdict {
     verdict(&forge(&original(), change))
 }
@@ -62,7 +61,7 @@ fn no_flipped_bit_matches_even_with_checksums_repaired() {
 
 #[test]
 fn an_input_that_the_game_ignores_is_bound_all_the_same() {
-    // Flips the wink of the first player in the first run. Layout: ticks, length, add, wink, add, wink.
+    // The wink of the first player. Layout: ticks, length, add, wink, add, wink.
     let verdict = forged(|forged| forged.payload(0)[3] ^= 1);
     assert_eq!(verdict, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
 }
@@ -115,7 +114,7 @@ fn ticks_cannot_be_added_removed_or_moved() {
     }
     let swapped = forged(|forged| forged.blocks.swap(0, 1));
     assert_eq!(swapped, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
-    // The last block has one run of five ticks, which is shortened to four ticks.
+    // The last block has one run of five ticks.
     let shorter = forged(|forged| {
         assert_eq!(forged.payload(3)[0], 5);
         forged.payload(3)[0] = 4;
@@ -137,7 +136,7 @@ fn the_end_cannot_be_restated() {
         hash: actual,
         difference: ClaimDifference::Value { name: name.into(), claimed, actual: actual_value },
     };
-    // Layout: count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
+    // Count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
     let count = CHAIN.end;
     let (half, sum) = (count + 1, count + 1 + 13);
     assert_eq!(forged(|forged| forged.trailer()[sum + 4] ^= 64), value("sum", Some(40 ^ 64), Some(40)));
@@ -217,7 +216,7 @@ fn a_trailer_out_of_shape_is_refused() {
 
 #[test]
 fn a_chain_hash_of_another_file_is_refused() {
-    // The last checksum covers the changed trailer, so only the chain hash inside it is wrong.
+    // The last checksum covers the trailer: only the chain hash inside it is wrong.
     let file = original();
     let trailer = Forged::take_apart(&file).blocks.pop().unwrap().1;
     let payload = file.len() - 8 - trailer.len();

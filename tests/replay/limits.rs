@@ -1,5 +1,4 @@
-//! The cost of untrusted files: each limit holds exactly, and memory use follows the size of the file, not its length
-//! fields.
+//! Each limit holds exactly, and memory use follows the size of the file.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -14,7 +13,7 @@ fn verdict(file: &[u8], limits: &Limits) -> Verdict {
     verify::<Counter>(file, limits)
 }
 
-/// Expects the file to match when the limit equals the need, and to exceed a limit that is one lower.
+/// The limit that is needed suffices, and one less does not.
 fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Limits, u64)) {
     let mut limits = Limits::default();
     set(&mut limits, needed);
@@ -27,7 +26,7 @@ fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Li
 #[test]
 fn each_limit_is_exact() {
     let narrow = |value: u64| u32::try_from(value).unwrap();
-    // Each of the 35 ticks costs |-3| + |1| + 1 units of work.
+    // A tick costs |-3| + |1| + 1 units.
     let file = record(35, 10, |_| add(-3, 1));
     let length = file.len() as u64;
     assert_exact(&file, LimitKind::FileBytes, length, |limits, max| limits.file_bytes = max);
@@ -55,7 +54,7 @@ fn a_replay_beyond_a_limit_stays_where_it_is() {
 
 #[test]
 fn limits_come_before_the_rest_of_the_file() {
-    // A length beyond the limit is refused even if the file ends right after the length field.
+    // The file ends right after the length field.
     let file = record(35, 10, inputs_at);
     let head = 40 + 7 + 13 + 16 + 8;
     let mut cut = file[..head].to_vec();
@@ -69,7 +68,7 @@ fn limits_come_before_the_rest_of_the_file() {
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 
-/// Tracks the bytes that this thread holds, and their peak.
+/// Bytes that this thread holds, and their peak.
 struct Counting;
 
 thread_local! {
@@ -98,7 +97,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Returns the peak memory use of `work` in bytes.
+/// In bytes.
 fn most_held(work: impl FnOnce()) -> usize {
     let before = HELD.get();
     MOST.set(before);
@@ -117,7 +116,7 @@ fn memory_follows_the_file_and_not_its_length_fields() {
         let took = most_held(|| drop(verdict(damaged, &Limits::default())));
         assert!(took < bound, "{took} bytes for {what}");
     };
-    // Every four consecutive bytes are overwritten by a huge number, without and with repaired checksums.
+    // A huge number at every place, without and with repaired checksums.
     for high in [0x7f, 0x3f, 0x00] {
         let huge = [0xff, 0xff, 0xff, high];
         for at in 0..file.len() - 4 {

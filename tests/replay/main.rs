@@ -1,4 +1,4 @@
-//! Replay files, tested through the public API and `docs/FORMAT.md` only.
+//! Replay files, through the public API and `docs/FORMAT.md` only.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
@@ -18,7 +18,6 @@ use lockstep2d::replay::{Limits, Recording, Verdict, verify};
 
 use counter::{Counter, Input};
 
-/// Records a game of the counter.
 fn record(ticks: u64, interval: u32, inputs_at: impl Fn(u64) -> [Input; 2]) -> Vec<u8> {
     let mut recording = Recording::<Counter>::start(&counter::setup(), interval).unwrap();
     for tick in 0..ticks {

@@ -1,4 +1,4 @@
-//! The reader reports its position, and errors at the right offset; limits of header fields are exact.
+//! Positions and offsets of errors are right, and limits of header fields exact.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::SetupError;
@@ -19,8 +19,7 @@ fn it_knows_how_far_it_has_read() {
         assert_eq!(reader.ticks(), ticks);
         offsets.push(reader.offset());
     }
-    // A block begins with the length of its payload in four bytes. The length excludes these bytes, the kind and the
-    // checksum.
+    // A block begins with the length of its payload, four bytes.
     for pair in offsets.windows(2) {
         let start = usize::try_from(pair[0]).unwrap();
         let length = u32::from_le_bytes(file[start..start + 4].try_into().unwrap());
@@ -44,7 +43,7 @@ fn a_refused_setup_says_why() {
     assert_eq!(error.to_string(), "the setup cannot start a game: no floor");
 }
 
-/// Returns a replay with a different rules name in its header.
+/// A replay with another rules name.
 fn with_name(name: &str) -> Vec<u8> {
     forge(&record(5, 3, inputs_at), |forged| {
         let length = u32::from_le_bytes(forged.header[32..36].try_into().unwrap()) as usize;
@@ -85,7 +84,7 @@ fn a_chain_hash_that_is_wrong_is_named_where_it_stands() {
     let mut forged = Forged::take_apart(&file);
     let ticks = forged.trailer()[..8].to_vec();
     assert_eq!(file[payload..payload + 8], ticks, "expected the trailer here");
-    // The block's checksum covers the chain hash, so the test repairs the checksum.
+    // The block's checksum covers the chain hash.
     file[payload + CHAIN.start] ^= 1;
     let start = payload - 5;
     let end = file.len() - 8;

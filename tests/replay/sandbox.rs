@@ -1,4 +1,4 @@
-//! Sandbox replays: every command can be recorded, whether the world accepts or refuses it, and the replay matches.
+//! Every command can be recorded, accepted or refused.
 
 use lockstep2d::body::{
     Area, BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Name, Polygon, ShapeDef,
@@ -28,7 +28,7 @@ fn setup() -> SandboxSetup {
     SandboxSetup { config: Config::default(), commands }
 }
 
-/// Returns every command on a body, with values that may be refused.
+/// Every command on a body, with values that may be refused.
 fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
     let vector = Vec2::new(value, value.saturating_neg());
     let position = world.body(body).map_or(Vec2::ZERO, |body| body.position());
@@ -118,7 +118,7 @@ fn many_bodies_in_one_command_are_work() {
     assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
 }
 
-/// Overlapping bodies are charged far more work than the same bodies side by side, so that limits apply to them.
+/// Overlapping bodies cost far more work.
 #[test]
 fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {

@@ -1,4 +1,4 @@
-//! Setups with more than one encoding are refused, both when recording and when verifying.
+//! Setups with more than one encoding are refused.
 
 use std::collections::BTreeSet;
 use std::marker::PhantomData;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::forge::forge;
 
-/// A game without players that accepts any setup, and whose state never changes.
+/// Accepts any setup; the state never changes.
 struct Still<S>(PhantomData<S>);
 
 impl<S: Serialize + DeserializeOwned> Game for Still<S> {
@@ -48,7 +48,7 @@ impl<S: Serialize + DeserializeOwned> Game for Still<S> {
     }
 }
 
-/// A number that increases each time it is decoded.
+/// Increases each time it is decoded.
 #[derive(Serialize)]
 struct Growing(u8);
 

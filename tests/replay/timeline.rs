@@ -1,5 +1,4 @@
-//! A timeline seeks to any tick, and finds the state that a playback without seeks has at this tick. A seek simulates
-//! at most two intervals, the keyframes stay within their memory budget, and no invalid keyframe file is used.
+//! A seek finds the state of a playback without seeks, and simulates at most two intervals within a memory budget.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -18,7 +17,7 @@ pub(crate) fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> 
     Timeline::open(file, &options, &Limits::default()).unwrap()
 }
 
-/// Returns the state hash of every tick of a playback without seeks.
+/// State hashes of a playback without seeks.
 pub(crate) fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
     let mut replay = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
     let mut hashes = vec![replay.game().state_hash()];
@@ -51,8 +50,7 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // Cases: room for all keyframes, room for a hundred keyframes, and two intervals that are not multiples of the
-    // block length.
+    // Room for all keyframes, for a hundred, and intervals that are not multiples of the block length.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
         assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");
@@ -125,7 +123,7 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // The memory has room for about 100 keyframes, and for 30 saves for stepping backwards.
+    // Room for about 100 keyframes, and for 30 saves for stepping backwards.
     let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
@@ -192,8 +190,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // A tick costs three units of work, and one tick costs 102. If repeated ticks counted again, the limit would be
-    // exceeded.
+    // Three units a tick, and 102 for one tick. Repeated ticks must not count again.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {
@@ -202,7 +199,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     }
 }
 
-/// A counter with a hidden value that affects the sum and is not saved.
+/// A hidden value affects the sum and is not saved.
 struct Forgetful {
     counter: Counter,
     last: i64,

@@ -1,5 +1,4 @@
-//! Bisection finds the tick, the stage of the tick, the body and the field of a random bit flip. It simulates fewer
-//! ticks than three verifications of the replay.
+//! Bisection finds tick, stage, body and field of a random bit flip, with fewer ticks than three verifications.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -23,7 +22,7 @@ thread_local! {
     static STEPS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A yard that counts its steps, with an optional bit flip.
+/// Counts its steps.
 struct Faulty<const FAULTY: bool>(Yard);
 
 impl<const FAULTY: bool> Faulty<FAULTY> {
@@ -91,7 +90,7 @@ fn inputs(tick: u64) -> Vec<u8> {
     (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
 }
 
-/// Returns a random flip that changes the state, and the path of its body.
+/// A flip that changes the state, and the path of its body.
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
@@ -111,7 +110,7 @@ fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
         let before = yard.state_hash();
         let Some(path) = flip.apply(&mut yard) else { continue };
         assert_ne!(yard.state_hash(), before);
-        // Skips flips that the step erases, because they leave no trace.
+        // The step may erase the flip.
         if flip.when == When::Before {
             yard.step(&inputs(flip.tick - 1));
             let mut right = Yard::new(&seed).unwrap();
@@ -128,7 +127,7 @@ fn evidence(bytes: Vec<u8>) -> Evidence {
     Evidence::read(bytes, &Limits::default()).unwrap()
 }
 
-/// Returns the path of the blamed subject, and the name of its blamed field.
+/// Blamed subject and field.
 fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());
@@ -160,7 +159,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(found.stage, Some(stage), "{what}");
         assert_eq!(culprit(&found), (path.clone(), flip.field.name().into()), "{what}");
     });
-    // The flips were in every field, and both before and after the step.
+    // In every field, before and after the step.
     let drawn = drawn.into_inner().unwrap();
     assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();
@@ -184,13 +183,13 @@ fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
     assert!(last < flip.tick && flip.tick <= first && first == last + 60, "{found:?}");
     assert!(found.notes.last().unwrap().contains("a trace of them"), "{found:?}");
 
-    // The faulty program simulates its own replay again.
+    // The faulty program simulates its own replay.
     let trace = Trace::<Faulty<true>>::of_replay(&replay, &limits, first, 60).unwrap();
     assert_eq!((trace.tick(), trace.history().len()), (first, 61));
     let found = bisect::<Sound>(&evidence(trace.to_bytes()), None, &limits).unwrap();
     assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
     assert_eq!(culprit(&found), (path, flip.field.name().into()), "{found:?}");
-    // A program without the fault finds no difference in its own trace of the same replay.
+    // A program without the fault finds no difference in its own trace.
     let own = Trace::<Sound>::of_replay(&replay, &limits, u64::MAX, 60).unwrap();
     assert!(bisect::<Sound>(&evidence(own.to_bytes()), None, &limits).unwrap().is_equal());
 }
@@ -208,8 +207,7 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
         assert!(STEPS.get() < 3 * TICKS);
         assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-        // The comparison cannot try all bits, so it may blame no body. If it blames a body, this must be the body with
-        // the flip.
+        // The comparison cannot try all bits, and may blame no body.
         let told = found.explanation.map(|told| told.path);
         assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }
@@ -226,7 +224,7 @@ fn sandbox(seed: u64) -> SandboxSetup {
     setup
 }
 
-/// Bisects two replays that differ in one command, by one bit of a velocity.
+/// Two replays differ in one command, by one bit of a velocity.
 #[test]
 fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     sweep::for_each(sweep::sample(0..40, 7), |case| {
@@ -264,15 +262,14 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     });
 }
 
-/// The first difference is the first tick whose states differ, even if inputs differ earlier.
+/// Inputs may differ earlier.
 #[test]
 fn replays_whose_states_meet_again_part_where_every_tick_says_so() {
     let record = |kicks: &[(u64, i32)]| {
         let mut recording = Recording::<Sandbox>::start(&sandbox(0), 60).unwrap();
         for now in 0..120 {
             let kick = kicks.iter().find(|(tick, _)| *tick == now);
-            // Kick 0 sets the gravity to its current value: different inputs, the same state. Other kicks change the
-            // gravity.
+            // Kick 0 sets the current gravity: different inputs, equal states.
             let commands = match kick {
                 Some((_, 0)) => {
                     vec![Command::SetGravity { gravity: recording.game().world().config().gravity }]

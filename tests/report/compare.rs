@@ -1,5 +1,4 @@
-//! Comparing reports identifies the diverged peer, the tick, the body and the field after a bit flip in a yard of sixty
-//! bodies.
+//! Comparing reports finds the diverged peer, the tick, the body and the field after a bit flip.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Difference, Value};
@@ -14,7 +13,6 @@ use crate::yard::{BODIES, Flip, Peer, When, Yard};
 
 const CHECKPOINT: u64 = 10;
 
-/// Reads a report back from its bytes.
 fn evidence(report: &DesyncReport) -> Evidence {
     Evidence::read(report.to_bytes(), &Limits::default()).unwrap()
 }
@@ -23,7 +21,7 @@ pub(crate) fn compared(a: &Evidence, b: &Evidence) -> Comparison {
     compare::<Yard>(a, b, &Limits::default()).unwrap()
 }
 
-/// Simulates until a checkpoint differs, then seven more ticks, and returns the reports.
+/// Simulates until seven ticks after a checkpoint that differs.
 fn reports(peers: &mut [Peer; 3], until: u64) -> Option<[DesyncReport; 3]> {
     let mut found = None;
     while peers[0].tick < until {
@@ -54,13 +52,11 @@ fn random_flip(rng: &mut Rng, when: When) -> Flip {
     }
 }
 
-/// Returns the number of bits in which the two values differ.
 fn flipped_bits(difference: &Difference) -> u32 {
     let bits = |value: &Option<Value>| value.as_ref().and_then(Value::bits).unwrap();
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
-/// Returns the field and the bit of the explanation.
 fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     let explanation = found.explanation.as_ref()?;
     let name = explanation.differences.first()?.field().name();
@@ -68,8 +64,7 @@ fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     Some((field, explanation.bit))
 }
 
-/// Returns the state hash after the tick in which a bit flips. A ball that rolls may move on in exactly the same way
-/// whether its velocity or its spin was changed; no comparison can tell the two flips apart.
+/// A rolling ball may move on equally whether its velocity or its spin was changed; no comparison can tell.
 fn state_after(seed: u64, flip: Flip) -> StateHash {
     let mut peer = Peer::new(seed, Some(flip));
     while peer.tick < flip.tick {
@@ -78,9 +73,8 @@ fn state_after(seed: u64, flip: Flip) -> StateHash {
     peer.game.state_hash()
 }
 
-/// Compares the reports of a peer whose game had a bit flip and of another peer, in `count` cases. Every `stride`th
-/// drawn flip is tried. At most one in twenty may be explained by another flip with the same effect.
-/// Returns the number of flips that made no difference to the game.
+/// Compares `count` faulty peers, trying every `stride`th flip. At most one in twenty may be explained by another flip
+/// with the same effect. Returns the number of flips without a difference.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;
@@ -110,7 +104,7 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
         assert_eq!(found.trajectories[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
         assert_eq!(found.tick, Some(flip.tick), "{what}");
         let first = &found.subjects[0];
-        // The step may have restored the body, and changed only contacts.
+        // The step may have restored the body, and changed contacts.
         let is_restored = found.subjects.iter().all(|subject| subject.path != body);
         assert!(!is_restored || when == When::Before, "{what}");
         if !is_restored {
@@ -124,12 +118,12 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
                 assert_eq!(flipped_bits(&first.differences[0]), 1, "{what}");
                 &first.differences[0]
             }
-            // The flip affected only its own body, so no explanation is needed.
+            // Other bodies are unaffected.
             When::Before if found.explanation.is_none() => {
                 assert_eq!((found.subjects.len(), first.differences.len()), (1, 1), "{what}");
                 &first.differences[0]
             }
-            // The step may have restored the flipped field and changed other fields.
+            // The step may have restored the field and changed others.
             When::Before => {
                 let explanation = found.explanation.as_ref().expect(&what);
                 assert_eq!((explanation.tick, &explanation.path), (flip.tick - 1, &body), "{what}");
@@ -163,8 +157,8 @@ fn a_bit_that_flips_after_a_step_is_found() {
     cases(1, count, When::After, stride);
 }
 
-/// Checks flips before a step. Everything that touches the body then differs in the same tick, so that the comparison
-/// finds the bit by trying all bits. Fewer than half of the flips leave no difference after the step.
+/// All that touches the body differs in one tick, so that the comparison tries all bits. Fewer than half of the flips
+/// leave no difference.
 fn check_flips_before_a_step(seed: u64) {
     let (count, stride) = sweep::size((50, 1), (10, 5));
     let swallowed = cases(seed, count, When::Before, stride);
@@ -193,7 +187,7 @@ fn peers_that_agree_are_equal() {
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }
 
-/// A replay has only checkpoints, so that the tick is found to within one checkpoint interval, and no fields are found.
+/// A replay has checkpoints only: no tick and no fields are found.
 #[test]
 fn replays_tell_who_diverged_between_which_checkpoints() {
     let flip = Flip { tick: 60, when: When::After, body: 9, field: BodyField::VelocityY, bit: 12 };
@@ -205,13 +199,13 @@ fn replays_tell_who_diverged_between_which_checkpoints() {
     assert_eq!(found.blame, Blame::Side(Side::B));
     assert!(found.subjects.is_empty() && !found.notes.is_empty());
 
-    // With the report of the diverged peer, the tick and the field are found.
+    // The report of the diverged peer gives tick and field.
     let report = peers[1].report(1, 75, Vec::new());
     let found = compared(&replays[0], &evidence(&report));
     assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
     assert_eq!(found.subjects.len(), 1, "{:?}", found.subjects);
 
-    // The report of the correct peer contains only the correct states.
+    // The correct peer's report has correct states only.
     let report = peers[0].report(0, 75, Vec::new());
     let found = compared(&evidence(&report), &replays[1]);
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));

@@ -1,4 +1,4 @@
-//! The field view of a state is complete: states that differ in any bit differ in a field.
+//! States that differ in any bit differ in a field.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Field, differences, fields};
@@ -37,7 +37,6 @@ fn whatever_bit_of_a_state_differs_is_a_field() {
             changed[24 + rng.next_u32() as usize % (state - 24)] ^= 1 << (rng.next_u32() % 8);
             let hash = StateHash::of_bytes(&changed[..state]);
             changed[state..].copy_from_slice(&hash.0.to_le_bytes());
-            // Most changed bits give an invalid state.
             let Ok(other) = World::from_bytes(&changed) else { continue };
             let found = differences(&before, &view(&other));
             assert!(!found.is_empty(), "{name}: a changed bit is missing from the view");

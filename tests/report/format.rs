@@ -1,4 +1,4 @@
-//! Encoding of reports: valid reports survive a round trip, and anything else is refused.
+//! Valid reports survive a round trip, and anything else is refused.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -21,7 +21,6 @@ fn read(bytes: &[u8]) -> Result<DesyncReport, ReportError> {
     DesyncReport::from_bytes(bytes, &Limits::default())
 }
 
-/// Returns the bytes with a recomputed hash.
 fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len() - 16;
     let hash = StateHash::of_bytes(&bytes[..end]);
@@ -45,7 +44,7 @@ fn a_report_comes_back() {
     assert_eq!(report.saves_left_out(), 0);
 }
 
-/// The saves nearest to the differing checkpoint are kept first, as they are the most informative.
+/// Saves nearest to the differing checkpoint are kept first.
 #[test]
 fn a_report_that_would_be_large_leaves_saves_out() {
     let peer = peer();
@@ -92,7 +91,7 @@ fn what_no_peer_writes_is_refused() {
     }
 }
 
-/// For any damage to a report with a valid hash, a comparison ends with a result or an error.
+/// For any damage with a valid hash, a comparison ends with a result or an error.
 #[test]
 fn hostile_reports_are_no_danger() {
     let mut peer = Peer::new(1, None);

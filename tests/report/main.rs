@@ -1,4 +1,4 @@
-//! Desync reports: comparing the evidence of two peers whose states diverged finds the peer, the tick and the field.
+//! Desync reports of two peers whose states diverged.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
 mod bisect;

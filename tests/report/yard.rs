@@ -1,4 +1,4 @@
-//! A game with dozens of touching bodies: a yard full of balls and boxes that players push.
+//! A yard full of balls and boxes that players push.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -107,7 +107,6 @@ pub(crate) fn inputs_at(tick: u64, player: u64) -> u8 {
     rng.next_u32().to_le_bytes()[0]
 }
 
-/// Whether a bit flips before or after the step of its tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum When {
     Before,
@@ -119,14 +118,14 @@ pub(crate) enum When {
 pub(crate) struct Flip {
     pub(crate) tick: u64,
     pub(crate) when: When,
-    /// Index among the dynamic bodies.
+    /// Among the dynamic bodies.
     pub(crate) body: usize,
     pub(crate) field: BodyField,
     pub(crate) bit: u32,
 }
 
 impl Flip {
-    /// Flips the bit and returns the body's path, or `None` if the world refuses the flip.
+    /// Returns the body's path, or `None` if the world refuses the flip.
     pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
         let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
         game.world.flip_bit(body, self.field, self.bit).ok()?;
@@ -155,7 +154,7 @@ impl Peer {
         Peer { game, history, recorder, replay, flip, tick: 0, flipped: None }
     }
 
-    /// Simulates a tick without recording it.
+    /// Without recording it.
     fn play(&mut self, inputs: &[u8]) {
         let next = self.tick + 1;
         let flip = |when| move |flip: &Flip| flip.tick == next && flip.when == when;
@@ -174,8 +173,7 @@ impl Peer {
         (0..u64::from(PLAYERS)).map(|player| inputs_at(self.tick, player)).collect()
     }
 
-    /// Simulates and records a tick; every seventh tick first simulates four ticks with predicted inputs and rolls
-    /// back.
+    /// Simulates and records a tick. Every seventh tick first predicts four ticks and rolls back.
     pub(crate) fn advance(&mut self) {
         let start = self.tick;
         if start % 7 == 3 {

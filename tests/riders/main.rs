@@ -1,5 +1,4 @@
-//! Characters stay on their ground: on lifts, turning platforms, trains and belts, and on random stairs and slopes
-//! between walls, for each kind of mover shape and from 30 to 240 ticks a second.
+//! Characters stay on their ground, at 30 to 240 ticks a second.
 
 mod overhangs;
 
@@ -15,7 +14,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// Shapes of characters, each with its feet at `y = -0.7`.
+/// Feet are at `y = -0.7`.
 fn shapes() -> [(&'static str, Geometry); 4] {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     let sharp = Polygon::rectangle(fx!(0.3), fx!(0.7)).expect("valid");
@@ -28,22 +27,22 @@ fn world(tick_rate: u32) -> World {
     World::new(Config { tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// Returns the speed that gravity adds in one tick, in m/s.
+/// In m/s, per tick.
 fn fall(tick_rate: u32) -> Fx {
     fx!(10) / i64::from(tick_rate)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Platform {
-    /// A plate whose velocity changes at random times.
+    /// Changes its velocity at random times.
     Lift,
-    /// A plate that is moved by `World::move_to` along an ellipse.
+    /// Moved by `World::move_to` along an ellipse.
     Ellipse,
-    /// A plate that turns to and fro about its middle.
+    /// Turns to and fro about its middle.
     Turning,
-    /// Several plates, flush with each other, that move together.
+    /// Flush plates that move together.
     Train,
-    /// A wheel that turns to and fro below the character.
+    /// Turns to and fro below the character.
     Wheel,
     /// A belt that moves on a lift.
     Belt,
@@ -58,9 +57,9 @@ struct Ride {
     platform: Platform,
     rng: Rng,
     velocity: Vec2<Fx>,
-    /// Radii of the ellipse in metres.
+    /// In metres.
     size: Vec2<Fx>,
-    /// Frequency of the ellipse and of turning to and fro, in 1/s.
+    /// In 1/s, also for turning to and fro.
     turns: Fx,
 }
 
@@ -86,14 +85,13 @@ impl Ride {
         Ride { world, bodies, platform, rng, velocity: Vec2::ZERO, size, turns }
     }
 
-    /// Sets the motion of the bodies in the next tick.
     fn drive(&mut self, tick: u32, tick_rate: u32) {
         let phase = Angle::from_turns(fx_mul(self.turns, Fx::from_num(tick) / i64::from(tick_rate)));
         if tick.is_multiple_of(tick_rate / 2) {
             self.velocity = at(self.rng.range(fx!(-5), fx!(5)), self.rng.range(fx!(-5), fx!(5)));
         }
         let (sin, cos) = (Fx::from(phase.sin()), Fx::from(phase.cos()));
-        // The platform turns by at most 20 degrees to each side.
+        // At most 20 degrees to each side.
         let swing = fx_mul(fx_mul(fx!(0.349), fx_mul(self.turns, fx!(6.2832))), cos);
         let (velocity, spin) = match self.platform {
             Platform::Lift | Platform::Train | Platform::Belt => (self.velocity, fx!(0)),
@@ -109,7 +107,7 @@ impl Ride {
     }
 }
 
-/// Rides for some seconds, walking to and fro near the middle of the platform.
+/// Walks to and fro near the middle of the platform.
 fn ride((platform, (name, geometry), tick_rate, seed): (Platform, (&str, Geometry), u32, u64)) {
     let what = format!("{platform:?}, {name}, {tick_rate} Hz, seed {seed}");
     let mut ride = Ride::new(platform, tick_rate, seed);
@@ -177,11 +175,11 @@ fn a_rider_at_rest_stays_where_it_is_on_its_lift() {
                 let from_lift = state.position - world.body(lift).expect("there").position();
                 assert!((from_lift - at(fx!(1), fx!(1.2001))).length() < fx!(0.000002), "{from_lift:?}");
                 let ground = state.ground.expect("a lift");
-                // Displacements are rounded, so the velocity has an error of up to 1 µm times the tick rate.
+                // Displacements are rounded: up to 1 µm times the tick rate.
                 let error = (ground.velocity - velocity).length();
                 assert!(ground.body == lift && error < fx!(0.000001) * i64::from(rate), "{error}");
             }
-            // A jump starts with the velocity of the lift.
+            // A jump starts with the lift's velocity.
             world.step();
             state.velocity = at(fx!(1), fx!(6));
             state = world.move_character(&mover, &state, QueryFilter::default()).state;
@@ -214,7 +212,7 @@ fn a_belt_carries_at_its_speed() {
     }
 }
 
-/// Returns the points of a level of stairs and slopes between two walls.
+/// Stairs and slopes between two walls.
 fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     let mut points = vec![at(fx!(-3), fx!(4)), at(fx!(-3), fx!(0)), at(fx!(0), fx!(0))];
     let (mut x, mut y) = (fx!(0), fx!(0));
@@ -234,8 +232,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // A level stretch follows each slope. If a step followed directly, it would be higher than its nominal height
-        // for feet that are still on the slope.
+        // Otherwise a step would be higher than its nominal height for feet that are still on the slope.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }
@@ -243,7 +240,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// Runs to the right wall, stands, and runs back to the left wall.
+/// To the right wall and back.
 fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let (name, geometry) = shape;
     let mut rng = Rng::new(seed);
@@ -258,7 +255,7 @@ fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let end = points[points.len() - 1].x;
     for (direction, wall) in [(fx!(1), end), (fx!(-1), fx!(-3))] {
         let way = fx_div(end + fx!(9), speed).expect("a speed");
-        // The climb of each step adds to the path, so twice the time is allowed.
+        // Twice the time, because climbing adds to the path.
         let ticks = (way * i64::from(tick_rate) * 2).to_num::<u32>();
         for tick in 0..ticks {
             state.velocity = at(fx_mul(direction, speed), state.velocity.y - fall(tick_rate));
@@ -310,7 +307,7 @@ fn a_run_up_a_slope_ends_at_the_wall() {
     }
 }
 
-/// A character between two slopes of 60 degrees is not on ground. It is reported as wedged, and can jump out.
+/// Between slopes of 60 degrees a character is not on ground, and can jump out.
 #[test]
 fn a_character_in_a_steep_v_is_wedged_and_can_jump_out() {
     for rate in RATES {

@@ -8,7 +8,7 @@ use lockstep2d::world::Explosion;
 
 use super::{Stage, ball, capsule, line, near, num, pill, rect, square};
 
-/// Sample "Body Type". A jointed platform with a load becomes kinematic, fixed, dynamic, and is disabled.
+/// Sample "Body Type".
 #[test]
 fn a_jointed_platform_changes_its_kind() {
     let mut stage = Stage::new();
@@ -30,7 +30,7 @@ fn a_jointed_platform_changes_its_kind() {
     stage.run(60);
     near(stage.place(platform).x, start.x + fx!(3), fx!(0.000001));
     assert_eq!(stage.place(platform).y, start.y);
-    // Friction 0.6 accelerates the load to 3 m/s in half a second.
+    // Friction 0.6 takes half a second to 3 m/s.
     near(stage.velocity(load).x, fx!(3), fx!(0.01));
 
     stage.world.set_kind(platform, BodyKind::Fixed).expect("valid");
@@ -48,7 +48,7 @@ fn a_jointed_platform_changes_its_kind() {
     near(stage.place(platform).y, fx!(5), fx!(0.01));
 }
 
-/// Sample "Weeble". A body with a low centre of mass stands up again after an explosion.
+/// Sample "Weeble", with a low centre of mass.
 #[test]
 fn a_weeble_rights_itself() {
     let mut stage = Stage::with_floor();
@@ -64,14 +64,14 @@ fn a_weeble_rights_itself() {
     stage.run_and(900, |stage| tilt = tilt.max(stage.angle(weeble).abs()));
     assert!(tilt > fx!(0.1), "expected the explosion to tilt it, by {tilt} rad");
     near(stage.angle(weeble), fx!(0), fx!(0.05));
-    // The velocity of a point of a rigid body is v + w x r.
+    // v + w x r.
     stage.world.set_velocity(weeble, at!(1, 2), fx!(3)).expect("valid");
     let body = stage.body(weeble);
     let point = body.centre_of_mass() + at!(0.5, 2);
     assert_eq!(body.velocity_at(point), at!(-5, 3.5));
 }
 
-/// Sample "Sleep". A sleeper floats until something wakes it; its sensors work; a body that never sleeps starts awake.
+/// Sample "Sleep".
 #[test]
 fn sleepers_wait_to_be_woken() {
     let mut stage = Stage::with_floor();
@@ -82,7 +82,7 @@ fn sleepers_wait_to_be_woken() {
         stage.spawn(BodyDef::dynamic().position(at!(0, 3)).asleep().never_sleeps(), &[ball(fx!(1))]);
     let lower = stage.spawn(BodyDef::dynamic().position(at!(5, 1)).asleep(), &[square(fx!(1))]);
     let upper = stage.add(at!(5, 5), square(fx!(0.5)));
-    // The visitor passes above the solid part of the sleeper, through the sleeper's sensor.
+    // Above the solid part of the sleeper, through its sensor.
     let def = BodyDef::dynamic().position(at!(-4, 3.8)).gravity_scale(fx!(0)).velocity((fx!(6), fx!(0)));
     let visitor = stage.spawn(def, &[ball(fx!(0.1))]);
     let (mut begins, mut ends, mut woken) = (0, 0, false);
@@ -100,7 +100,7 @@ fn sleepers_wait_to_be_woken() {
     near(stage.place(upper).y, fx!(2.5), fx!(0.02));
 }
 
-/// Sample "Sleep". The long pendulum falls asleep only where it hangs, not where it turns round.
+/// Sample "Sleep": the long pendulum.
 #[test]
 fn a_long_pendulum_does_not_fall_asleep_at_its_turning_point() {
     let mut stage = Stage::new();
@@ -118,7 +118,7 @@ fn a_long_pendulum_does_not_fall_asleep_at_its_turning_point() {
     near(stage.angle(pendulum), -fx!(1.5708), fx!(0.02));
 }
 
-/// Sample "Bad". A dynamic body without mass coasts like a kinematic body.
+/// Sample "Bad". A dynamic body without mass coasts like a kinematic one.
 #[test]
 fn a_body_without_mass_coasts() {
     let mut stage = Stage::with_floor();
@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Sample "Pivot". A bar starts with a velocity and an angular velocity for which its lower end is at rest at first.
+/// Sample "Pivot". The lower end is at rest at first.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();
@@ -151,7 +151,7 @@ fn a_bar_starts_to_turn_about_its_lower_end() {
     }
 }
 
-/// Sample "Kinematic". A body reaches a moving target in each tick.
+/// Sample "Kinematic".
 #[test]
 fn a_kinematic_body_follows_a_figure_of_eight() {
     let mut stage = Stage::new();
@@ -165,7 +165,7 @@ fn a_kinematic_body_follows_a_figure_of_eight() {
     }
 }
 
-/// Sample "Mixed Locks". A locked degree of freedom does not move at all, whatever falls on the body.
+/// Sample "Mixed Locks".
 #[test]
 fn locks_hold_exactly() {
     let mut stage = Stage::with_floor();
@@ -187,7 +187,7 @@ fn locks_hold_exactly() {
     near(stage.place(upright).y, fx!(0.5), fx!(0.02));
 }
 
-/// Sample "Set Velocity". A box that is driven into the floor in every tick stays on it.
+/// Sample "Set Velocity".
 #[test]
 fn a_box_that_is_pushed_down_does_not_sink() {
     let mut stage = Stage::with_floor();
@@ -198,7 +198,7 @@ fn a_box_that_is_pushed_down_does_not_sink() {
     });
 }
 
-/// Sample "Wake Touching". Waking a fixed body wakes everything that lies on it.
+/// Sample "Wake Touching".
 #[test]
 fn waking_the_ground_wakes_what_lies_on_it() {
     let mut stage = Stage::new();

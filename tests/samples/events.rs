@@ -1,4 +1,4 @@
-//! Box2D's group "Events". Its sample Joint is tested together with Breakable in `joints.rs`.
+//! Box2D's group "Events". `joints.rs` has its sample Joint.
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, Filter, MassSource, ShapeDef};
 use lockstep2d::fx;
@@ -8,8 +8,7 @@ use lockstep2d::world::{Explosion, SensorChange};
 
 use super::{Stage, ball, capsule, line, near, num, rect, rounded, square};
 
-/// Sample "Sensor Funnel". Bodies that fall through a funnel with paddles are reported once by the sensor at its
-/// bottom, and removed.
+/// Sample "Sensor Funnel".
 #[test]
 fn a_funnel_empties_into_its_sensor() {
     let mut stage = Stage::new();
@@ -59,12 +58,11 @@ fn a_funnel_empties_into_its_sensor() {
         }
     }
     assert_eq!((dropped, caught), (20, 20));
-    // The funnel and its three paddles are left.
+    // The funnel and its three paddles.
     assert_eq!(stage.world.body_count(), 4);
 }
 
-/// Sample "Sensor Bookend". Each begin has its end, whatever ends the visit: leaving, disabling or removing either
-/// side.
+/// Sample "Sensor Bookend". A visit ends by leaving, disabling or removing either side.
 #[test]
 fn every_begin_has_its_end() {
     for ending in 0..5 {
@@ -91,7 +89,7 @@ fn every_begin_has_its_end() {
                     }
                 }
             }
-            // Either both sensors have an open overlap with each other, or neither has.
+            // Both sensors have an open overlap with each other, or neither.
             let mutual = open.iter().filter(|(sensor, visitor)| {
                 let is_sensor = |id| stage.world.shape(id).is_some_and(|shape| shape.is_sensor());
                 is_sensor(*sensor) && is_sensor(*visitor)
@@ -116,7 +114,7 @@ fn every_begin_has_its_end() {
     }
 }
 
-/// Sample "Foot Sensor". The sensor at the feet counts the ground under it, and nothing in a jump.
+/// Sample "Foot Sensor".
 #[test]
 fn a_foot_sensor_knows_the_ground() {
     let mut stage = Stage::new();
@@ -130,7 +128,7 @@ fn a_foot_sensor_knows_the_ground() {
     let player = stage.spawn(BodyDef::dynamic().position(at!(0.5, 1)).lock_rotation(), &[body, sole]);
     let sole = *stage.world.shapes_of(player).last().expect("two shapes");
     stage.run(60);
-    // The sensor is 1 m wide, half a metre to each side of the middle of a link.
+    // 1 m wide, half a metre to each side of the middle of a link.
     let under = stage.world.sensor_overlaps(sole).len();
     assert!((1..=3).contains(&under), "{under} links");
     stage.world.set_velocity(player, at!(0, 5), fx!(0)).expect("valid");
@@ -140,12 +138,12 @@ fn a_foot_sensor_knows_the_ground() {
         assert!(!lifted || stage.world.sensor_overlaps(sole).is_empty());
         in_the_air += i32::from(lifted);
     });
-    // A jump of 5 m/s is above 0.3 m for sqrt(25 - 6) / 5 seconds.
+    // 5 m/s are above 0.3 m for sqrt(25 - 6) / 5 seconds.
     assert!((50..=54).contains(&in_the_air), "{in_the_air} ticks");
     assert!(!stage.world.sensor_overlaps(sole).is_empty());
 }
 
-/// Sample "Contact". Debris that touches the player becomes a part of it; a part that touches the wall is lost.
+/// Sample "Contact". A part that touches the wall is lost.
 #[test]
 fn what_touches_the_player_becomes_a_part_of_it() {
     let mut stage = Stage::weightless();
@@ -188,7 +186,7 @@ fn what_touches_the_player_becomes_a_part_of_it() {
     assert!(stage.energy() < start + fx!(0.1));
 }
 
-/// Sample "Body Move". Each body that moved is reported with its pose, and once when it falls asleep.
+/// Sample "Body Move".
 #[test]
 fn moves_are_reported_until_sleep() {
     let mut stage = Stage::with_floor();
@@ -223,7 +221,7 @@ fn moves_are_reported_until_sleep() {
     assert!(stage.world.events().moved.len() >= 6, "expected the explosion to move some");
 }
 
-/// Sample "Sensor Types". Sensors on fixed, kinematic and dynamic bodies detect a ball that their filter accepts.
+/// Sample "Sensor Types".
 #[test]
 fn sensors_of_every_kind_of_body_detect() {
     let (ground, sensor, default) = (2, 4, 1);
@@ -254,13 +252,11 @@ fn sensors_of_every_kind_of_body_detect() {
         }
     });
     assert_eq!(order, eyes);
-    // The solid part of the dynamic sensor's own body is not a visitor, nor is the ground, whose mask excludes
-    // the sensor.
+    // Neither the solid part of the sensor's own body is a visitor, nor the ground, whose mask excludes the sensor.
     assert_eq!(stage.world.sensor_overlaps(eyes[2]).iter().filter(|&&id| id != visitor).count(), 0);
 }
 
-/// Sample "Persistent Contact". A ball that rolls over links touches without a gap, and its contact force equals its
-/// weight.
+/// Sample "Persistent Contact". The contact force equals the weight.
 #[test]
 fn a_rolling_ball_keeps_touching() {
     let mut stage = Stage::new();
@@ -286,7 +282,7 @@ fn a_rolling_ball_keeps_touching() {
     assert!(begun > 5, "expected one link after the other, {begun}");
 }
 
-/// Sample "Sensor Hits". A fast ball crosses sensors of every kind of body, each once and in order, as a bullet too.
+/// Sample "Sensor Hits".
 #[test]
 fn a_fast_ball_hits_every_sensor_in_order() {
     for speed in [200, 250, 300, 399] {
@@ -320,7 +316,7 @@ fn a_fast_ball_hits_every_sensor_in_order() {
     }
 }
 
-/// Sample "Projectile Event". A projectile explodes where it hits and is gone; the stack falls.
+/// Sample "Projectile Event".
 #[test]
 fn a_projectile_explodes_on_impact() {
     let mut stage = Stage::with_floor();
@@ -344,16 +340,14 @@ fn a_projectile_explodes_on_impact() {
         break;
     }
     let (centre, _) = at.expect("a hit");
-    // The projectile hits after a quarter of a tick, and pushes the box ahead for the rest of the tick: by 0.75 / 60 s
-    // x 60 m/s x 0.2 / 1.2.
+    // It hits after a quarter of a tick, and pushes the box ahead for the rest: by 0.75 / 60 s x 60 m/s x 0.2 / 1.2.
     assert!(centre.x > fx!(7.2) && centre.x < fx!(7.25) + fx!(0.125), "exploded at {centre:?}");
     assert!(stage.world.body(shot).is_none());
     stage.run(180);
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Sample "Circle Impulse". A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves
-/// at its restitution times this speed.
+/// Sample "Circle Impulse": 1 kg at 25 m/s.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {

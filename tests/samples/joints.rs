@@ -1,5 +1,4 @@
-//! Box2D's group "Joints": samples of the joints themselves. `machines.rs` has the samples of things that are built
-//! with joints.
+//! Box2D's group "Joints". `machines.rs` has things that are built with joints.
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;
@@ -11,18 +10,18 @@ use lockstep2d::solver::{
 
 use super::{Stage, ball, capsule, near, num, rect, square};
 
-/// Returns the axis at 45 degrees.
+/// At 45 degrees.
 fn diagonal() -> Vec2<Fx> {
     at!(0.70710678, 0.70710678)
 }
 
-/// Returns how far a spring of frequency `f` yields under an acceleration `g`: `g / (2 pi f)^2`.
+/// A spring yields by `g / (2 pi f)^2`.
 fn sag(gravity: Fx, hertz: Fx) -> Fx {
     let omega = fx_mul(lockstep2d::math::PI * 2, hertz);
     fx_div(gravity, fx_mul(omega, omega)).expect("positive")
 }
 
-/// Sample "Distance Joint". A rod keeps its length while it swings, and a chain of rods too.
+/// Sample "Distance Joint": rods.
 #[test]
 fn rods_keep_their_lengths() {
     let mut stage = Stage::new();
@@ -43,7 +42,7 @@ fn rods_keep_their_lengths() {
     });
 }
 
-/// Sample "Distance Joint". A spring yields by `g / (2 pi f)^2`, limits end its range, and a spring may only pull.
+/// Sample "Distance Joint": springs and limits.
 #[test]
 fn a_distance_joint_is_a_spring_with_limits() {
     let hang = |kind: Distance, ticks: u32| {
@@ -65,18 +64,17 @@ fn a_distance_joint_is_a_spring_with_limits() {
         fx!(0.005),
     );
     near(hang(Distance::new().limit(fx!(0.5), fx!(2)), 300), fx!(2), fx!(0.005));
-    // The ball weighs 39.3 N. A spring that only pushes does not hold it: free fall, h = g t^2 / 2.
+    // The ball weighs 39.3 N. A spring that only pushes does not hold it: h = g t^2 / 2.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
-    // This spring pulls with at most half the weight. It reaches this force when it is stretched by half its sag, after
-    // a sixth of its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s² from
-    // there on.
+    // This spring pulls with at most half the weight, which it reaches when stretched by half its sag, after a sixth of
+    // its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s².
     let fallen =
         hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(-19.635), fx!(100)), 60);
     near(fallen, fx!(3.61), fx!(0.03));
 }
 
-/// Sample "Motor Joint". A body follows a moving target, and a box on a spring to the ground sags by `g / (2 pi f)^2`.
+/// Sample "Motor Joint".
 #[test]
 fn a_motor_joint_follows_its_target() {
     let mut stage = Stage::with_floor();
@@ -95,10 +93,10 @@ fn a_motor_joint_follows_its_target() {
         let place = Vec2::new(widen((time + time).sin()) * 6, fx!(8) + widen(time.sin()) * 4);
         stage.world.move_to(target, place, time + time).expect("in range");
         stage.run(1);
-        // The target accelerates by at most 24 m/s² along x and 4 m/s² along y. With gravity: sqrt(24^2 + 14^2) = 28
+        // The target accelerates by at most 24 m/s² along x and 4 m/s² along y: with gravity sqrt(24^2 + 14^2) = 28
         // m/s².
         let bound = sag(fx!(28), fx!(4)) * 2;
-        // The first second is left out, because the target starts with 12 m/s at once.
+        // The target starts with 12 m/s at once.
         assert!(
             tick < 60 || stage.place(body).distance(place) < bound,
             "tick {tick}: {:?} of {place:?}",
@@ -109,8 +107,7 @@ fn a_motor_joint_follows_its_target() {
     assert!(stage.world.joint_force(joint).is_some_and(|(force, _)| force.length() < fx!(5000)));
 }
 
-/// Sample "Top Down Friction". A force of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m. A torque stops its
-/// rotation.
+/// Sample "Top Down Friction". 10 N stop 1 kg at 5 m/s after half a second and 1.25 m.
 #[test]
 fn a_motor_joint_is_friction_seen_from_above() {
     let mut stage = Stage::weightless();
@@ -119,7 +116,7 @@ fn a_motor_joint_is_friction_seen_from_above() {
     let body = stage.spawn(def, &[square(fx!(0.5))]);
     let motor = Motor::new().linear(Vec2::ZERO, fx!(10)).angular(fx!(0), fx!(1));
     stage.join(JointDef::new(ground, body, motor).colliding());
-    // A torque of 1 N m stops a rotation of 6 rad/s after a second, because the inertia is 1/6 kg m².
+    // 1 N m stops 6 rad/s after a second: the inertia is 1/6 kg m².
     stage.run(30);
     near(stage.velocity(body).length(), fx!(0), fx!(0.01));
     near(stage.body(body).angular_velocity(), fx!(3), fx!(0.01));
@@ -128,8 +125,7 @@ fn a_motor_joint_is_friction_seen_from_above() {
     near(stage.body(body).angular_velocity(), fx!(0), fx!(0.001));
 }
 
-/// Sample "Filter Joint". Two boxes overlap undisturbed while the joint exists, and push each other apart once it is
-/// removed.
+/// Sample "Filter Joint".
 #[test]
 fn a_filter_joint_lets_two_bodies_overlap() {
     let mut stage = Stage::with_floor();
@@ -144,7 +140,7 @@ fn a_filter_joint_lets_two_bodies_overlap() {
     assert!(apart.x.abs().max(apart.y.abs()) > fx!(3.97), "still at {apart:?}");
 }
 
-/// Sample "Revolute". Motor, limit and spring of a hinge, and a lever that a falling ball presses against its limit.
+/// Sample "Revolute".
 #[test]
 fn a_hinge_has_motor_limit_and_spring() {
     let hinge = |kind: Revolute, gravity: Fx, ticks: u32| {
@@ -177,7 +173,7 @@ fn a_hinge_has_motor_limit_and_spring() {
     let lever = stage.add(at!(20, 10), rect(fx!(10), fx!(0.5)).offset(at!(-10, 0)));
     let kind = Revolute::new().limit(fx!(-0.7854), fx!(0)).motor(fx!(0), fx!(1000));
     let joint = stage.join_at(ground, lever, kind, at!(19, 10));
-    // A weight of 200 N at 9 m overcomes the motor and turns the lever counter-clockwise to the upper limit of 0.
+    // 200 N at 9 m overcome the motor, counter-clockwise to the upper limit of 0.
     stage.run(120);
     near(stage.world.joint_angle(joint).expect("there"), fx!(0), fx!(0.01));
     let (_, motor) = stage.world.joint_part_force(joint, JointPart::Motor).expect("there");
@@ -190,7 +186,7 @@ fn a_hinge_has_motor_limit_and_spring() {
     assert!(stage.place(ball).y < fx!(13));
 }
 
-/// Sample "Prismatic". A box slides down an inclined axis to the limit; a motor of limited force slows it.
+/// Sample "Prismatic".
 #[test]
 fn a_slider_stays_on_its_axis() {
     let slide = |kind: Prismatic, ticks: u32| {
@@ -205,18 +201,17 @@ fn a_slider_stays_on_its_axis() {
         stage.world.joint_translation(joint).expect("there").x
     };
     let limited = Prismatic::new().limit(fx!(-10), fx!(10));
-    // The box slides by g sin(45 degrees) t^2 / 2.
+    // g sin(45 degrees) t^2 / 2.
     near(slide(limited, 60), fx!(-3.5355), fx!(0.07));
     near(slide(limited, 600), fx!(-10), fx!(0.01));
-    // The weight of 4 kg pulls with 28.28 N along the axis. A motor of 25 N leaves 0.8211 m/s².
+    // 4 kg pull with 28.28 N along the axis. 25 N leave 0.8211 m/s².
     near(slide(limited.motor(fx!(2), fx!(25)), 120), fx!(-1.642), fx!(0.03));
-    // A motor of 100 N accelerates the box by a = 17.9 m/s² up to the motor's speed v = 2 m/s. After 2 s the box has
-    // moved by 2 s * v - v^2 / 2 a.
+    // 100 N accelerate by a = 17.9 m/s² up to v = 2 m/s: 2 s * v - v^2 / 2 a in 2 s.
     near(slide(limited.motor(fx!(2), fx!(100)), 120), fx!(3.888), fx!(0.02));
     near(slide(limited.spring(fx!(1), fx!(0.5), fx!(0)), 900), -sag(fx!(7.0711), fx!(1)), fx!(0.002));
 }
 
-/// Sample "Wheel". The spring yields along its axis by `g / (2 pi f)^2` while the motor turns the wheel.
+/// Sample "Wheel".
 #[test]
 fn a_wheel_turns_on_its_spring() {
     let mut stage = Stage::new();
@@ -231,7 +226,7 @@ fn a_wheel_turns_on_its_spring() {
     near(stage.body(wheel).angular_velocity(), fx!(2), fx!(0.001));
 }
 
-/// Adds a box of 4 kg for each of six kinds of joints, which join the boxes to a fixed body. Returns the boxes.
+/// A box of 4 kg for each of six kinds of joints, joined to a fixed body.
 fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> JointDef) -> Vec<BodyId> {
     let ground = stage.spawn(BodyDef::fixed(), &[]);
     let wheel = Wheel::new().spring(fx!(1), fx!(0.7), fx!(0)).limit(fx!(-1), fx!(1)).motor(fx!(1), fx!(10));
@@ -256,7 +251,7 @@ fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> Jo
     bodies
 }
 
-/// Sample "Motion Locks". Each of six kinds of joints holds a body whose rotation, or whose place, is locked.
+/// Sample "Motion Locks".
 #[test]
 fn locks_and_joints_agree() {
     let mut stage = Stage::new();
@@ -274,9 +269,8 @@ fn locks_and_joints_agree() {
     }
 }
 
-/// Sample "Breakable", and sample "Joint" of the group "Events". A box weighs 40 N. A box that swings on a hinge loads
-/// it with `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point. With a threshold of 100 N all joints hold, and
-/// with 30 N none.
+/// Samples "Breakable" and, of the group "Events", "Joint". A box weighs 40 N. Swinging on a hinge it loads `m g (1 + 2
+/// r^2 / (r^2 + k^2)) = 88 N` at the lowest point.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -300,7 +294,7 @@ fn joints_break_above_their_threshold() {
     }
 }
 
-/// Sample "Separation". A blow opens the joints a little, and they close again.
+/// Sample "Separation".
 #[test]
 fn joints_close_after_a_blow() {
     let mut stage = Stage::new();
@@ -313,14 +307,14 @@ fn joints_close_after_a_blow() {
     let joints: Vec<_> = stage.world.joints().map(|(id, _)| id).collect();
     stage.run(600);
     for id in joints {
-        // A motor joint has no rigid part, and therefore no error.
+        // A motor joint has no rigid part.
         let is_motor = matches!(stage.world.joint(id).expect("there").def().kind, JointKind::Motor(_));
         let error = stage.world.joint_error(id);
         assert!(error.map_or(is_motor, |error| error < fx!(0.005)), "{error:?} m");
     }
 }
 
-/// Sample "User Constraint". Two ropes, applied as impulses between the ticks as in the sample, hold a box.
+/// Sample "User Constraint". Ropes are impulses between the ticks.
 #[test]
 fn a_constraint_of_ones_own_holds_a_box() {
     let mut stage = Stage::new();
@@ -328,7 +322,7 @@ fn a_constraint_of_ones_own_holds_a_box() {
     let body = stage.spawn(def, &[rect(fx!(1), fx!(0.5)).density(fx!(20))]);
     let (hook, corners) = (at!(3, 0), [at!(1, -0.5), at!(1, 0.5)]);
     let rope = |stage: &Stage, corner: Vec2<Fx>| hook.distance(stage.body(body).transform().apply(corner));
-    // Each rope is a spring of 3 Hz for half of the 40 kg, damped with 0.7, that only pulls.
+    // A spring of 3 Hz for half of the 40 kg, damped with 0.7, that only pulls.
     let stiffness = fx!(20) * 355;
     let damping = fx!(20) * 26;
     for _ in 0..3600 {
@@ -349,13 +343,13 @@ fn a_constraint_of_ones_own_holds_a_box() {
             stage.world.apply_impulse(body, impulse, end).expect("valid");
         }
     }
-    // At rest the two ropes carry 400 N evenly, each at asin(0.5 / length) from the vertical.
+    // The ropes carry 400 N evenly, each at asin(0.5 / length) from the vertical.
     for corner in corners {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");
         let tension = fx_div(fx_mul(fx!(200), length), lean).expect("positive");
-        // A part of the tension is damping: between two ticks, when the impulses are computed, the box falls at
-        // `1.5 g h`, where `h` is a sub-step, although its mean speed over a tick is 0.
+        // A part of the tension is damping: when the impulses are computed, between two ticks, the box falls at `1.5 g
+        // h`, where `h` is a sub-step.
         let damped = fx_div(fx_mul(damping, lean), length * 16).expect("positive");
         near(length, fx!(1) + fx_div(tension - damped, stiffness).expect("positive"), fx!(0.001));
     }

@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": samples of things that are built with joints.
+//! Box2D's group "Joints": things that are built with joints.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, JointId, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::Config;
 
 use super::{Stage, ball, capsule, hull, near, num, pill, rect, square};
 
-/// Sample "Bridge". Planks between two banks carry balls and wedges.
+/// Sample "Bridge".
 #[test]
 fn a_bridge_carries() {
     let mut stage = Stage::new();
@@ -33,7 +33,7 @@ fn a_bridge_carries() {
     }
 }
 
-/// Sample "Ball & Chain". Thirty links of 6 kg hold a ball of 1 t, and the ball swings no higher than its start.
+/// Sample "Ball & Chain". Thirty links of 6 kg hold 1 t.
 #[test]
 fn a_chain_holds_a_heavy_ball() {
     let mut stage = Stage::new();
@@ -52,12 +52,12 @@ fn a_chain_holds_a_heavy_ball() {
     let start = stage.energy();
     stage.run_and(1200, |stage| {
         assert!(stage.world.widest_joint_gap() < fx!(0.2), "{} m", stage.world.widest_joint_gap());
-        // The tolerance is 100 J. The ball can lose 300 kJ of potential energy.
+        // A tolerance of 100 J of 300 kJ.
         assert!(stage.energy() < start + fx!(100), "{} J of {start}", stage.energy());
     });
 }
 
-/// Adds a row of links of 6 kg and 1 m, welded to each other and to the ground. Returns the last link.
+/// Links of 6 kg and 1 m, welded in a row to the ground. Returns the last one.
 fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     let mut before = stage.spawn(BodyDef::fixed(), &[]);
     for i in 0..links {
@@ -69,8 +69,7 @@ fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     before
 }
 
-/// Sample "Cantilever". A row of soft welds bends under its weight and comes to rest; a stiffer one bends less. The
-/// cantilever of the sample, which falls and swings, gains no energy.
+/// Sample "Cantilever". The cantilever of the sample falls and swings, without a gain of energy.
 #[test]
 fn a_stiffer_cantilever_bends_less() {
     let tip = |hertz: Fx| {
@@ -87,7 +86,7 @@ fn a_stiffer_cantilever_bends_less() {
     stage.run_and(1800, |stage| assert!(stage.energy() <= fx!(1), "{} J of 0", stage.energy()));
 }
 
-/// A car with two driven wheels on springs.
+/// Two driven wheels on springs.
 fn car(stage: &mut Stage, place: Vec2<Fx>, torque: Fx) -> (BodyId, [JointId; 2]) {
     let outline = [at!(-1.3, -0.4), at!(1.3, -0.4), at!(1.3, 0), at!(0, 0.8), at!(-1, 0.8), at!(-1.3, 0.2)];
     let chassis = stage.add(place + at!(0, 1), hull(&outline).friction(fx!(0.2)));
@@ -102,7 +101,7 @@ fn car(stage: &mut Stage, place: Vec2<Fx>, torque: Fx) -> (BodyId, [JointId; 2])
     (chassis, axles)
 }
 
-/// Sample "Driving". A car drives over hills, through a dip and over a teeter, upright.
+/// Sample "Driving".
 #[test]
 fn a_car_drives_over_hills_and_a_teeter() {
     let mut stage = Stage::new();
@@ -111,7 +110,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     points.extend((0..).zip(heights).map(|(i, y)| Vec2::new(num(25 + 5 * i), y)));
     points.extend([at!(130, 0), at!(130, 20)]);
     let ground = stage.spawn(BodyDef::fixed(), &Chain::new(&points).links().expect("valid"));
-    // The teeter turns at first, so that its near end is down.
+    // At first it turns, so that its near end is down.
     let teeter = BodyDef::dynamic().position(at!(95, 1)).angular_velocity(fx!(1));
     let teeter = stage.spawn(teeter, &[rect(fx!(10), fx!(0.25))]);
     let hinge = Revolute::new().limit(fx!(-0.14), fx!(0.14));
@@ -136,7 +135,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     assert!(crossed < 1800, "it got to {:?}", stage.place(chassis));
 }
 
-/// Sample "Ragdoll". A ragdoll falls down steps; its joints hold, and it comes to rest.
+/// Sample "Ragdoll".
 #[test]
 fn ragdolls_hold_together() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -148,7 +147,7 @@ fn ragdolls_hold_together() {
     assert!(stage.fastest() < fx!(0.2), "still {} m/s", stage.fastest());
 }
 
-/// Sample "Soft Body". A ring of capsules with soft welds falls, bends, and is a ring again.
+/// Sample "Soft Body".
 #[test]
 fn a_soft_ring_keeps_its_shape() {
     let mut stage = Stage::with_floor();
@@ -177,8 +176,7 @@ fn a_soft_ring_keeps_its_shape() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Sample "Doohickey". Four pairs of wheels fall in a heap. Bars that slide along each other connect the wheels of a
-/// pair, and the sliders keep to their limits.
+/// Sample "Doohickey". Bars that slide along each other connect the wheels of a pair.
 #[test]
 fn doohickeys_hold_together() {
     let mut stage = Stage::with_floor();
@@ -206,16 +204,15 @@ fn doohickeys_hold_together() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Sample "Scissor Lift". A motor lengthens a strut; the platform rises level, by the height that follows from the
-/// geometry of the links. The platform moves seven times as fast as the strut: with one iteration, the motor would
-/// hold, but the links would give way by up to 0.23 m.
+/// Sample "Scissor Lift". The platform moves seven times as fast as the strut: with one iteration, the links would give
+/// way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
     let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };
     let mut stage = Stage::of(Config { solver, ..Config::default() });
     let ground = stage.floor();
     let stiff = |def: JointDef| def.softness(fx!(120), fx!(5));
-    // With the angle `a` of the beams, a stage is `5 sin a` high; `sin a` is 0.15 at first.
+    // At the angle `a` of the beams, a stage is `5 sin a` high; `sin a` is 0.15 at first.
     let (sine, cosine) = (fx!(0.15), fx!(0.98868599));
     let (mut feet, mut anchors) = ([ground, ground], [at!(-2.5, 1.2), at!(2.5, 1.2)]);
     let mut strutted = ground;
@@ -252,16 +249,16 @@ fn a_scissor_lift_rises_level() {
         .join(stiff(JointDef::new(ground, strutted, strut).anchor_a(at!(-2.5, 1.2)).anchor_b(at!(0.5, 0))));
     stage.run_and(240, |stage| {
         near(stage.angle(platform), fx!(0), fx!(0.03));
-        // The strut spans `3 cos a` along x and `7 sin a` along y.
+        // `3 cos a` along x and `7 sin a` along y.
         let length = stage.world.joint_length(strut).expect("there");
         let sine = sqrt((fx_mul(length, length) - fx!(9)) / 40).expect("longer than 3 m");
         near(stage.place(platform).y, fx!(0.6) + sine * 15, fx!(0.1));
     });
-    // The strut grows from 3.1459 m by 0.25 m/s.
+    // From 3.1459 m by 0.25 m/s.
     near(stage.world.joint_length(strut).expect("there"), fx!(4.1459), fx!(0.1));
 }
 
-/// Returns the shapes of a disc with 16 teeth.
+/// A disc with 16 teeth.
 fn toothed(along: Fx) -> Vec<ShapeDef> {
     let tooth = |i: i32| {
         let angle = Angle::from_turns(num(i) / 16);
@@ -276,8 +273,7 @@ fn toothed(along: Fx) -> Vec<ShapeDef> {
     shapes
 }
 
-/// Sample "Gear Lift", and sample "Far Gate" of the group "World". Two wheels with teeth lift a door on a chain. The
-/// result is equal to the last bit at any place in the world.
+/// Samples "Gear Lift" and, of the group "World", "Far Gate". The result is bit-identical a thousand kilometres away.
 #[test]
 fn toothed_wheels_lift_a_door() {
     let lift = |origin: Vec2<Fx>| {
@@ -313,14 +309,14 @@ fn toothed_wheels_lift_a_door() {
     };
     let (turned, door, start, gap) = lift(Vec2::ZERO);
     near(turned[0], fx!(-1.2), fx!(0.02));
-    // Both wheels have 16 teeth, so they turn by equal angles, except for the play of a tooth's width.
+    // Equal angles, except for the play of a tooth's width.
     near(turned[1], fx!(1.2), fx!(0.2));
     assert!(door.y > start.y + fx!(0.8), "the door went from {start:?} to {door:?}");
     assert!(gap < fx!(0.02), "{gap} m");
     assert_eq!(lift(at!(1000000, -3000)), (turned, door, start, gap));
 }
 
-/// Sample "Door". A blow throws a heavy door against its limit; it swings back and comes to rest shut.
+/// Sample "Door".
 #[test]
 fn a_door_swings_back_and_stops_at_its_limits() {
     for blow in [2000, 10000, 50000] {
@@ -342,7 +338,7 @@ fn a_door_swings_back_and_stops_at_its_limits() {
     }
 }
 
-/// Sample "Scale Ragdoll". Shapes and anchors grow while the figure lies on the ground, and its joints hold.
+/// Sample "Scale Ragdoll".
 #[test]
 fn a_figure_grows() {
     let mut stage = Stage::with_floor();

@@ -1,6 +1,5 @@
-//! The samples of Box2D and the examples of rapier, each as a small world that shows what the sample shows. The table
-//! in `docs/SAMPLES.md` names the test of each sample. Expected values follow from mechanics or from the purpose of
-//! the sample.
+//! The samples of Box2D and the examples of rapier as small worlds. The table in `docs/SAMPLES.md` names the test of
+//! each sample. Expected values follow from mechanics or from the purpose of the sample.
 
 /// A vector of two literals.
 macro_rules! at {
@@ -32,13 +31,11 @@ use lockstep2d::solver::{JointDef, JointKind};
 use lockstep2d::world::{Config, World};
 use lockstep2d_scenes::Scene;
 
-/// A world, with short methods for the operations of the samples.
 struct Stage {
     world: World,
 }
 
 impl Stage {
-    /// A world with the default settings: 60 Hz, 10 m/s² downwards.
     fn new() -> Self {
         Stage { world: World::default() }
     }
@@ -55,21 +52,20 @@ impl Stage {
         Stage { world: World::new(config).expect("valid settings") }
     }
 
-    /// The world of a scene before its first tick.
+    /// Before its first tick.
     fn of_scene(name: &str) -> Self {
         let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
         let game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
         Stage { world: game.world().clone() }
     }
 
-    /// A world with a floor along the x axis.
     fn with_floor() -> Self {
         let mut stage = Self::new();
         stage.floor();
         stage
     }
 
-    /// Adds a fixed floor, 200 m wide, whose top is the x axis.
+    /// 200 m wide, with its top on the x axis.
     fn floor(&mut self) -> BodyId {
         self.fixed(at!(0, -1), rect(fx!(100), fx!(1)))
     }
@@ -78,17 +74,14 @@ impl Stage {
         self.world.spawn(&def, shapes).expect("a valid body")
     }
 
-    /// Adds a fixed body with one shape.
     fn fixed(&mut self, place: Vec2<Fx>, shape: ShapeDef) -> BodyId {
         self.spawn(BodyDef::fixed().position(place), &[shape])
     }
 
-    /// Adds a dynamic body with one shape.
     fn add(&mut self, place: Vec2<Fx>, shape: ShapeDef) -> BodyId {
         self.spawn(BodyDef::dynamic().position(place), &[shape])
     }
 
-    /// Adds a dynamic body with one shape and a velocity.
     fn throw(&mut self, place: Vec2<Fx>, velocity: Vec2<Fx>, shape: ShapeDef) -> BodyId {
         self.spawn(BodyDef::dynamic().position(place).velocity(velocity), &[shape])
     }
@@ -97,13 +90,12 @@ impl Stage {
         self.world.add_joint(&def).expect("a valid joint")
     }
 
-    /// Adds a joint whose anchors are at one point of the world.
+    /// Anchors at one point of the world.
     fn join_at(&mut self, a: BodyId, b: BodyId, kind: impl Into<JointKind>, place: Vec2<Fx>) -> JointId {
         let def = self.world.joint_at(a, b, kind, place).expect("bodies of the world");
         self.join(def)
     }
 
-    /// Adds a joint along an axis of the world.
     fn join_along(
         &mut self,
         (a, b): (BodyId, BodyId),
@@ -115,12 +107,12 @@ impl Stage {
         self.join(def)
     }
 
-    /// Simulates a number of ticks, in which the solver must not clamp anything.
+    /// The solver must not clamp anything.
     fn run(&mut self, ticks: u32) {
         self.run_and(ticks, |_| ());
     }
 
-    /// Simulates a number of ticks and calls `look` after each.
+    /// Calls `look` after each tick.
     fn run_and(&mut self, ticks: u32, mut look: impl FnMut(&mut Stage)) {
         for _ in 0..ticks {
             self.world.step();
@@ -142,17 +134,16 @@ impl Stage {
         self.body(id).velocity()
     }
 
-    /// Angle of a body in radians, from -pi to pi.
+    /// In radians, from -pi to pi.
     fn angle(&self, id: BodyId) -> Fx {
         self.body(id).angle().to_radians()
     }
 
-    /// The first shape of a body.
     fn shape(&self, id: BodyId) -> ShapeId {
         *self.world.shapes_of(id).first().expect("a shape")
     }
 
-    /// Kinetic and potential energy of all dynamic bodies in J.
+    /// Kinetic and potential energy of the dynamic bodies in J.
     fn energy(&self) -> Fx {
         let gravity = self.world.config().gravity;
         let of =
@@ -160,7 +151,7 @@ impl Stage {
         self.world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| of(body)).sum()
     }
 
-    /// Speed in m/s of the fastest dynamic body.
+    /// Speed of the fastest dynamic body in m/s.
     fn fastest(&self) -> Fx {
         let dynamic = self.world.bodies().filter(|(_, body)| body.is_dynamic());
         dynamic.map(|(_, body)| body.velocity().length()).max().unwrap_or(Fx::ZERO)
@@ -171,7 +162,7 @@ fn ball(radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::circle(radius).expect("a valid circle"))
 }
 
-/// A rectangle with the given half extents.
+/// Half extents.
 fn rect(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("a valid rectangle"))
 }
@@ -180,13 +171,13 @@ fn square(half: Fx) -> ShapeDef {
     rect(half, half)
 }
 
-/// A rounded rectangle. The half extents include the radius.
+/// The half extents include the radius.
 fn rounded(half_width: Fx, half_height: Fx, radius: Fx) -> ShapeDef {
     let core = Polygon::rectangle(half_width - radius, half_height - radius);
     ShapeDef::new(core.and_then(|core| core.rounded(radius)).expect("a valid rectangle"))
 }
 
-/// A lying capsule from `-half` to `half`.
+/// Lying, from `-half` to `half`.
 fn pill(half: Fx, radius: Fx) -> ShapeDef {
     capsule(Vec2::new(-half, Fx::ZERO), Vec2::new(half, Fx::ZERO), radius)
 }
@@ -207,12 +198,10 @@ fn degrees(angle: i32) -> Angle {
     Angle::from_degrees(Fx::from_num(angle))
 }
 
-/// Converts a whole number to a fixed-point number.
 fn num(value: i32) -> Fx {
     Fx::from_num(value)
 }
 
-/// Asserts that a value is within a tolerance of the expected one.
 #[track_caller]
 fn near(value: Fx, expected: Fx, tolerance: Fx) {
     assert!((value - expected).abs() <= tolerance, "{value}, expected {expected} up to {tolerance}");

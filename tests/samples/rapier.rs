@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, Probe, QueryFilter};
 
 use super::{Stage, ball, degrees, hull, near, num, pill, rect, square};
 
-/// Example `add_remove2`. Boxes rain on turning platforms and are removed below them; the world keeps its size.
+/// Example `add_remove2`.
 #[test]
 fn what_falls_off_is_removed() {
     let mut stage = Stage::new();
@@ -33,7 +33,7 @@ fn what_falls_off_is_removed() {
     assert!(removed > 50, "only {removed} fell off");
 }
 
-/// Example `ccd2`. Fast compounds are stopped by a thin wall, and the thin sensor in front of the wall detects them.
+/// Example `ccd2`.
 #[test]
 fn thin_walls_stop_fast_compounds() {
     let mut stage = Stage::new();
@@ -64,8 +64,7 @@ fn thin_walls_stop_fast_compounds() {
     assert_eq!(seen.len(), 16, "expected the sensor to see all");
 }
 
-/// Example `collision_groups2`. Green boxes land on the green floor, blue boxes on the blue floor above; a box that
-/// misses its floor lands on the ground.
+/// Example `collision_groups2`. A box that misses its floor lands on the ground.
 #[test]
 fn groups_land_on_their_floors() {
     let mut stage = Stage::with_floor();
@@ -86,7 +85,7 @@ fn groups_land_on_their_floors() {
     }
 }
 
-/// Example `damping2`. `v = v0 exp(-c t)`, for velocity and angular velocity.
+/// Example `damping2`: `v = v0 exp(-c t)`.
 #[test]
 fn damping_is_exponential() {
     // exp(-c / 2) for c = 1 to 10.
@@ -108,14 +107,14 @@ fn damping_is_exponential() {
         let body =
             stage.spawn(def.linear_damping(num(i + 1)).angular_damping(num(10 - i)), &[square(fx!(0.2))]);
         stage.run(30);
-        // Each sub-step divides the velocity by 1 + c / 240. After a time t, the velocity is therefore larger than that
-        // of the exponential decay, by a share of about c^2 t / 480.
+        // Each sub-step divides the velocity by 1 + c / 240, which leaves a share of about c^2 t / 480 more than the
+        // exponential decay.
         near(stage.velocity(body).length(), slow * 10, fx!(0.04));
         near(stage.body(body).angular_velocity(), spin * 100, fx!(0.4));
     }
 }
 
-/// Example `debug_box_ball2`. A ball on the corner of a box does not sink into it.
+/// Example `debug_box_ball2`.
 #[test]
 fn a_ball_on_a_corner_does_not_sink() {
     let mut stage = Stage::new();
@@ -128,8 +127,7 @@ fn a_ball_on_a_corner_does_not_sink() {
     });
 }
 
-/// Example `debug_compression2`. Planks press a block of balls with more and more force; the balls stay between the
-/// plates.
+/// Example `debug_compression2`.
 #[test]
 fn a_press_does_not_squeeze_balls_out() {
     let mut stage = Stage::new();
@@ -157,8 +155,7 @@ fn a_press_does_not_squeeze_balls_out() {
     }
 }
 
-/// Example `debug_intersection2`. A probe that circles over a grid of balls finds those that are nearer than the sum of
-/// the radii.
+/// Example `debug_intersection2`.
 #[test]
 fn a_circling_probe_finds_its_ball() {
     let mut stage = Stage::new();
@@ -184,7 +181,7 @@ fn a_circling_probe_finds_its_ball() {
     assert!(found > 50);
 }
 
-/// Example `debug_many_colliders2`. Bodies of hundreds of parts fall on each other.
+/// Example `debug_many_colliders2`.
 #[test]
 fn bodies_of_hundreds_of_parts_stack() {
     let mut stage = Stage::with_floor();
@@ -202,7 +199,7 @@ fn bodies_of_hundreds_of_parts_stack() {
     }
 }
 
-/// Example `debug_total_overlap2`. Fifty boxes at one place come apart, and their total momentum stays zero.
+/// Example `debug_total_overlap2`. The total momentum stays zero.
 #[test]
 fn boxes_in_one_place_come_apart() {
     let mut stage = Stage::weightless();
@@ -215,9 +212,8 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// Example `inv_pyramid2`. Each box carries a box of twice its size. The lowest box, of 1 kg, carries four boxes, or
-/// five if contacts have a frequency of 120 Hz. At 30 Hz the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2
-/// = 0.38 m.
+/// Example `inv_pyramid2`. Each box carries one of twice its size. The lowest box, of 1 kg, carries four boxes, or five
+/// at 120 Hz. At 30 Hz the lowest of six would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {
@@ -239,8 +235,8 @@ fn an_inverted_pyramid_stands() {
     }
 }
 
-/// Example `one_way_platforms2`. A belt that is solid from above and one, upside down, that is solid from below: a body
-/// rides the first, falls through the second, and is pulled up to the lower side of the second by reversed gravity.
+/// Example `one_way_platforms2`. A body rides a belt that is solid from above. Reversed gravity pulls it to the lower
+/// side of a second one.
 #[test]
 fn one_way_belts_pass_bodies_on() {
     let mut stage = Stage::new();
@@ -270,7 +266,7 @@ fn one_way_belts_pass_bodies_on() {
     assert!(rode && hung, "rode {rode}, hung {hung}: {:?}", stage.place(body));
 }
 
-/// Example `platform2`. A platform with a velocity and one that `move_to` moves carry boxes without losing any.
+/// Example `platform2`.
 #[test]
 fn platforms_carry_boxes() {
     for moved in [false, true] {
@@ -287,7 +283,7 @@ fn platforms_carry_boxes() {
             .collect();
         stage.run(30);
         for tick in 0..600 {
-            // At most 3 m/s² sideways, a third of the acceleration that friction 1 can give.
+            // At most 3 m/s² sideways, a third of what friction 1 can give.
             let time = Angle::from_radians(num(tick) / 60);
             let velocity = Vec2::new(widen(time.sin()) * 3, widen((time + time).sin()) / 2);
             if moved {
@@ -305,7 +301,7 @@ fn platforms_carry_boxes() {
     }
 }
 
-/// Example `sensor2`. A sensor on a falling box detects the boxes on the ground, and reports the end of an overlap.
+/// Example `sensor2`.
 #[test]
 fn a_carried_sensor_sees_what_it_passes() {
     let mut stage = Stage::with_floor();
@@ -314,14 +310,14 @@ fn a_carried_sensor_sees_what_it_passes() {
     let switches = EventSwitches::default();
     let eye = ball(fx!(1)).density(fx!(0)).sensor().events(switches);
     let carrier = stage.spawn(BodyDef::dynamic().position(at!(0, 10)), &[square(fx!(0.2)), eye]);
-    // The sensor without density adds no mass.
+    // A sensor without density adds no mass.
     near(stage.body(carrier).mass(), fx!(0.16), fx!(0.0001));
     let mut seen = Vec::new();
     stage.run_and(180, |stage| {
         let begun = stage.world.events().sensor_begin.iter();
         seen.extend(begun.map(|event| stage.world.shape(event.visitor).expect("there").body()));
     });
-    // Boxes 4 and 5 are within 1 m of the place where the sensor lands.
+    // Within 1 m of where the sensor lands.
     assert!(seen.contains(&boxes[4]) && seen.contains(&boxes[5]), "{seen:?}");
     assert!(!seen.contains(&boxes[0]) && !seen.contains(&boxes[9]));
     let eye = *stage.world.shapes_of(carrier).last().expect("two shapes");
@@ -331,8 +327,7 @@ fn a_carried_sensor_sees_what_it_passes() {
     assert_eq!(stage.world.sensor_overlaps(eye).len(), before - 1);
 }
 
-/// Examples `heightfield2`, `polyline2`, `trimesh2` and `voxels2`. The same hill as a chain, as triangles and as boxes
-/// carries falling bodies. A box slides over level triangles without ghost collisions.
+/// Examples `heightfield2`, `polyline2`, `trimesh2` and `voxels2`: a hill as a chain, as triangles and as boxes.
 #[test]
 fn terrain_of_every_kind_carries() {
     let height = |i: i32| widen(Angle::from_turns(num(i) / 10).cos());

@@ -7,7 +7,7 @@ use lockstep2d::solver::{Distance, JointDef, Prismatic, Revolute, Weld, Wheel};
 
 use super::{Stage, ball, capsule, degrees, near, num, pill, rect, square};
 
-/// Example `debug_angular_limits2`. Motors drive arms to both ends of ranges of every kind, also beyond a turn.
+/// Example `debug_angular_limits2`, with limits beyond a turn.
 #[test]
 fn arms_stop_at_limits_beyond_half_a_turn() {
     for (lower, upper) in [(-45, 45), (0, 270), (135, 225), (-350, 0), (-200, 200), (-700, 500)] {
@@ -19,7 +19,7 @@ fn arms_stop_at_limits_beyond_half_a_turn() {
             let arm = stage.spawn(BodyDef::dynamic().position(place).angle(start), &[rect(fx!(1), fx!(0.1))]);
             let radians = |angle: i32| fx_mul(num(angle), PI) / 180;
             let middle = radians((lower + upper) / 2);
-            // The angle of a joint is relative to the pose in which the joint is created.
+            // Relative to the pose in which the joint is created.
             let hinge = Revolute::new().limit(radians(lower) - middle, radians(upper) - middle);
             let hinge = hinge.motor(fx!(5) * direction, fx!(20));
             let joint = stage.join_at(ground, arm, hinge, Vec2::ZERO);
@@ -30,7 +30,7 @@ fn arms_stop_at_limits_beyond_half_a_turn() {
     }
 }
 
-/// Example `joint_motor_position2`. Springs turn arms to their targets all around; motors turn arms to their limits.
+/// Example `joint_motor_position2`.
 #[test]
 fn springs_turn_arms_to_their_targets() {
     for eighth in -3..=4 {
@@ -51,8 +51,7 @@ fn springs_turn_arms_to_their_targets() {
     }
 }
 
-/// Examples `joint_ball2`, `joint_fixed2`, `joint_prismatic2` and `joints2`. Nets and rows of each kind of joint hang
-/// from fixed bodies.
+/// Examples `joint_ball2`, `joint_fixed2`, `joint_prismatic2` and `joints2`.
 #[test]
 fn nets_hang() {
     let mut stage = Stage::new();
@@ -92,8 +91,7 @@ fn nets_hang() {
     assert!(nodes.iter().all(|&id| stage.place(id).y > fx!(-12)));
 }
 
-/// Example `locked_rotations2`. A capsule whose rotation is locked falls on a bar whose position is locked, and turns
-/// it.
+/// Example `locked_rotations2`.
 #[test]
 fn locks_of_rotation_and_of_translation() {
     let mut stage = Stage::with_floor();
@@ -109,7 +107,7 @@ fn locks_of_rotation_and_of_translation() {
     assert!(turned > fx!(0.3) && stage.place(pill).y < fx!(2), "{turned} rad, {:?}", stage.place(pill));
 }
 
-/// Example `multi_pendulum2`. Pendulums of several bars swing without gaining energy.
+/// Example `multi_pendulum2`.
 #[test]
 fn pendulums_of_bars_gain_no_energy() {
     for bars in 1..=6 {
@@ -124,14 +122,14 @@ fn pendulums_of_bars_gain_no_energy() {
             before = bar;
         }
         let start = stage.energy();
-        // A hundredth of the energy that the bars can lose from level to hanging.
+        // A hundredth of the energy from level to hanging.
         let allowed = fx!(0.1) * i64::from(bars * bars);
         stage.run_and(600, |stage| assert!(stage.energy() < start + allowed, "{bars}: {} J", stage.energy()));
         assert!(stage.world.widest_joint_gap() < fx!(0.01));
     }
 }
 
-/// Example `pin_slot_joint2`. A cube slides along an inclined slot and turns in it; a ball is welded to its side.
+/// Example `pin_slot_joint2`.
 #[test]
 fn a_cube_slides_and_turns_in_a_slot() {
     let mut stage = Stage::new();
@@ -149,8 +147,7 @@ fn a_cube_slides_and_turns_in_a_slot() {
     near(stage.world.joint_translation(slot).expect("there").x, fx!(-1), fx!(0.02));
 }
 
-/// Example `rope_joints2`. A ball on a rope follows the body that it is tied to, and is never farther away than the
-/// length of the rope.
+/// Example `rope_joints2`.
 #[test]
 fn a_rope_tows() {
     let mut stage = Stage::with_floor();

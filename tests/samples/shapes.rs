@@ -11,7 +11,7 @@ fn valley() -> [Vec2<Fx>; 8] {
     [at!(-20, 30), at!(-20, 12), at!(-14, 8), at!(-7, 3), at!(-1, 0), at!(9, 0), at!(20, 0), at!(20, 30)]
 }
 
-/// Sample "Chain Shape". Ball, capsule and box come down a chain of slopes, and gain no energy on the way.
+/// Sample "Chain Shape".
 #[test]
 fn things_come_down_a_chain() {
     for shape in [ball(fx!(0.5)), pill(fx!(0.5), fx!(0.25)), square(fx!(0.5))] {
@@ -31,8 +31,7 @@ fn things_come_down_a_chain() {
     }
 }
 
-/// Sample "Chain Segment". Single links with neighbours of their own, three of which are changed while a body is on
-/// them.
+/// Sample "Chain Segment". Three links are changed while a body is on them.
 #[test]
 fn links_of_ones_own_are_smooth_and_can_change() {
     let mut stage = Stage::new();
@@ -51,7 +50,7 @@ fn links_of_ones_own_are_smooth_and_can_change() {
         near(stage.velocity(body).x, fx!(5), fx!(0.001));
         near(stage.place(body).y, fx!(0.5), fx!(0.01));
     });
-    // The body is at -8 m. The links under it are moved away, and it falls.
+    // At -8 m, the links under the body are moved away.
     let shapes = stage.world.shapes_of(ground).to_vec();
     for &id in &shapes[5..8] {
         stage
@@ -63,8 +62,7 @@ fn links_of_ones_own_are_smooth_and_can_change() {
     assert!(stage.place(body).y < fx!(0.3), "{:?}", stage.place(body));
 }
 
-/// Sample "Compound Shapes". A table stands on its legs; the mass of a body is that of its parts; a body that is
-/// spawned inside another one does not fly away.
+/// Sample "Compound Shapes".
 #[test]
 fn compounds_stand_and_bear_an_intruder() {
     let mut stage = Stage::with_floor();
@@ -73,10 +71,10 @@ fn compounds_stand_and_bear_an_intruder() {
     let table = stage.spawn(BodyDef::dynamic().position(at!(-5, 1)), &parts);
     let wing = |side: Fx| hull(&[Vec2::new(side * 2, fx!(0)), at!(0, 1.33333333333), at!(0, 4)]);
     let ship = stage.spawn(BodyDef::dynamic().position(at!(5, 1)), &[wing(fx!(-1)), wing(fx!(1))]);
-    // The centroid of each triangle is at a height of (0 + 4 / 3 + 4) / 3.
+    // The centroids of the triangles are at (0 + 4 / 3 + 4) / 3.
     near(stage.body(ship).local_centre_of_mass().y, fx!(16 / 9), fx!(0.00001));
     near(stage.body(ship).local_centre_of_mass().x, fx!(0), fx!(0.00001));
-    // The area of the table is 6 + 3 + 3 m², and its centre is at a height of (6 * 3.5 + 6 * 1.5) / 12.
+    // 6 + 3 + 3 m², with the centre at (6 * 3.5 + 6 * 1.5) / 12.
     near(stage.body(table).mass(), fx!(12), fx!(0.00001));
     near(stage.body(table).local_centre_of_mass().y, fx!(2.5), fx!(0.00001));
     stage.run(180);
@@ -86,11 +84,11 @@ fn compounds_stand_and_bear_an_intruder() {
     stage.add(place, rect(fx!(4), fx!(0.1)));
     stage.add(stage.place(ship) + at!(0, 2), ball(fx!(0.5)));
     stage.run_and(300, |stage| assert!(stage.fastest() < fx!(10), "{} m/s", stage.fastest()));
-    // The plank stays jammed between top and legs, which push it with the same force.
+    // The plank stays jammed between top and legs.
     assert!(stage.fastest() < fx!(0.05), "still {} m/s", stage.fastest());
 }
 
-/// Sample "Filter". Players of three teams, two of which cease to collide while they are piled up.
+/// Sample "Filter".
 #[test]
 fn filters_change_at_run_time() {
     let mut stage = Stage::with_floor();
@@ -108,11 +106,11 @@ fn filters_change_at_run_time() {
     heights(&stage, [fx!(1), fx!(3), fx!(5)]);
     stage.world.set_filter(stage.shape(pile[0]), team(2, !4)).expect("valid");
     stage.run(240);
-    // The second player falls through the first one, and the third player stays on top of both.
+    // The second player falls through the first, the third stays on both.
     heights(&stage, [fx!(1), fx!(1), fx!(3)]);
 }
 
-/// Sample "Custom Filter". Two categories express the rule that odd and even bodies pass each other.
+/// Sample "Custom Filter".
 #[test]
 fn odd_and_even_pass_each_other() {
     let mut stage = Stage::with_floor();
@@ -128,7 +126,7 @@ fn odd_and_even_pass_each_other() {
     }
 }
 
-/// Sample "Modify Geometry". A shape grows under a box and changes its kind; the box stays on top.
+/// Sample "Modify Geometry".
 #[test]
 fn a_shape_grows_and_changes_its_kind() {
     let mut stage = Stage::with_floor();
@@ -152,7 +150,7 @@ fn a_shape_grows_and_changes_its_kind() {
     }
 }
 
-/// Sample "Chain Link". Two chains whose ends name each other's points are one smooth floor.
+/// Sample "Chain Link".
 #[test]
 fn two_chains_link_up() {
     for shape in [ball(fx!(0.5)), pill(fx!(0.5), fx!(0.5)), square(fx!(0.5))] {
@@ -173,7 +171,7 @@ fn two_chains_link_up() {
     }
 }
 
-/// Sample "Rounded". A heap of random rounded polygons comes to rest in a trough without sinking into each other.
+/// Sample "Rounded".
 #[test]
 fn a_heap_of_rounded_polygons_rests() {
     let mut stage = trough();
@@ -190,7 +188,7 @@ fn a_heap_of_rounded_polygons_rests() {
     rests_in_the_trough(&mut stage);
 }
 
-/// Sample "Ellipse". An ellipse is a thin hexagon with a large radius; a heap of ellipses comes to rest.
+/// Sample "Ellipse": thin hexagons with a large radius.
 #[test]
 fn a_heap_of_ellipses_rests() {
     let mut stage = trough();
@@ -210,7 +208,7 @@ fn a_heap_of_ellipses_rests() {
     rests_in_the_trough(&mut stage);
 }
 
-/// A trough 10 m wide.
+/// 10 m wide.
 fn trough() -> Stage {
     let mut stage = Stage::with_floor();
     stage.fixed(at!(-6, 10), rect(fx!(1), fx!(10)));
@@ -227,7 +225,7 @@ fn rests_in_the_trough(stage: &mut Stage) {
     }
 }
 
-/// Sample "Offset". Shapes far from the origins of their bodies lie on each other.
+/// Sample "Offset".
 #[test]
 fn shapes_far_from_their_origins_stack() {
     let mut stage = Stage::new();
@@ -238,13 +236,13 @@ fn shapes_far_from_their_origins_stack() {
     let upper = stage.add(Vec2::ZERO, ShapeDef::new(plank.expect("valid")).offset(at!(9, 2)));
     assert_eq!(stage.body(upper).centre_of_mass(), at!(9, 2));
     stage.run(300);
-    // All centres are on x = 9: the capsule lies on the block, the plank on the capsule.
+    // All centres are on x = 9.
     near(stage.body(pill).centre_of_mass().y, fx!(0.25), fx!(0.02));
     near(stage.body(upper).centre_of_mass().y, fx!(1.25), fx!(0.03));
     near(stage.body(upper).centre_of_mass().x, fx!(9), fx!(0.02));
 }
 
-/// Sample "Recreate Static". The ground is replaced in every tick and still carries.
+/// Sample "Recreate Static".
 #[test]
 fn a_ground_that_is_replaced_in_every_tick_carries() {
     let mut stage = Stage::new();
@@ -258,8 +256,7 @@ fn a_ground_that_is_replaced_in_every_tick_carries() {
     }
 }
 
-/// Sample "Convex Hull" of the group "Geometry". Points inside a hull are left out; more than eight corners are
-/// refused.
+/// Sample "Convex Hull" of the group "Geometry".
 #[test]
 fn a_hull_leaves_out_what_is_inside() {
     let mut rng = Rng::new(11);

@@ -6,7 +6,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 
 use super::{Stage, ball, capsule, hull, line, near, num, pill, rect, rounded, square};
 
-/// Sample "Single Box". A box slides by `v^2 / (2 mu g)` and stays upright.
+/// Sample "Single Box": `v^2 / (2 mu g)`.
 #[test]
 fn a_box_slides_to_rest() {
     let mut stage = Stage::with_floor();
@@ -17,7 +17,7 @@ fn a_box_slides_to_rest() {
     assert!(stage.body(body).is_asleep());
 }
 
-/// Sample "Tilted Stack". A stack whose upper part leans beyond its lowest box falls over; one that leans less stands.
+/// Sample "Tilted Stack".
 #[test]
 fn a_stack_falls_when_it_leans_too_far() {
     for (lean, falls) in [(fx!(0.2), true), (fx!(0.05), false)] {
@@ -26,8 +26,7 @@ fn a_stack_falls_when_it_leans_too_far() {
         let place = |i: i32| Vec2::new(lean * i64::from(i), num(i) + fx!(0.5));
         let stack: Vec<_> = (0..10).map(|i| stage.add(place(i), crate_)).collect();
         stage.run(900);
-        // The common centre of mass of the upper nine boxes is offset from the lowest box's centre by five times
-        // `lean`.
+        // The centre of mass of the upper nine boxes is five times `lean` beside that of the lowest box.
         let top = stage.place(stack[9]).y;
         assert_eq!(top < fx!(9), falls, "a lean of {lean} m: the top is at {top} m");
         assert!(stack.iter().all(|&id| stage.place(id).y > fx!(0.49)), "expected no box in the ground");
@@ -35,7 +34,7 @@ fn a_stack_falls_when_it_leans_too_far() {
     }
 }
 
-/// Sample "Vertical Stack". The stack stands, and a bullet knocks it over.
+/// Sample "Vertical Stack".
 #[test]
 fn a_vertical_stack_stands_until_it_is_shot_at() {
     let mut stage = Stage::with_floor();
@@ -54,7 +53,7 @@ fn a_vertical_stack_stands_until_it_is_shot_at() {
     assert!(stage.place(top).y < fx!(11), "the top is at {}", stage.place(top).y);
 }
 
-/// Sample "Circle Stack". Balls on a common axis stay on it, and hit each other in order.
+/// Sample "Circle Stack".
 #[test]
 fn balls_on_an_axis_bounce_in_order() {
     let mut stage = Stage::with_gravity(at!(0, -20));
@@ -77,7 +76,7 @@ fn balls_on_an_axis_bounce_in_order() {
     assert!(balls.windows(2).all(|pair| stage.place(pair[0]).y < stage.place(pair[1]).y));
 }
 
-/// Sample "Capsule Stack". Lying capsules stand on each other.
+/// Sample "Capsule Stack".
 #[test]
 fn lying_capsules_stack() {
     let mut stage = Stage::with_floor();
@@ -90,7 +89,7 @@ fn lying_capsules_stack() {
     }
 }
 
-/// Sample "Cliff". Bodies that slide over an edge go on without a kick.
+/// Sample "Cliff".
 #[test]
 fn an_edge_does_not_kick() {
     for direction in [1, -1] {
@@ -118,15 +117,15 @@ fn an_edge_does_not_kick() {
                 assert!(stage.velocity(body).x.abs() < speed + fx!(0.02), "{:?}", stage.velocity(body));
             }
         });
-        // Each capsule starts a metre before the edge that it falls off.
+        // A metre before the edge.
         assert!([0, 3, 6].iter().all(|&i| stage.place(bodies[i].0).y < bodies[i].1 - fx!(0.5)));
     }
 }
 
-/// Sample "Arch". Wedge-shaped blocks stand in a semicircle, with a load on top.
+/// Sample "Arch".
 #[test]
 fn an_arch_carries_a_load() {
-    // A semicircle of 17 blocks between radii of 4 and 6 m.
+    // 17 blocks between radii of 4 and 6 m.
     let mut stage = Stage::with_floor();
     let corner = |radius: Fx, i: i32| {
         let turn = lockstep2d::math::Rot::from_angle(Angle::from_turns(num(i) / 34));
@@ -143,7 +142,7 @@ fn an_arch_carries_a_load() {
     near(stage.place(load).y, fx!(6.5), fx!(0.1));
 }
 
-/// Sample "Double Domino". A push at the first domino fells all.
+/// Sample "Double Domino".
 #[test]
 fn all_dominoes_fall() {
     let mut stage = Stage::with_floor();
@@ -152,13 +151,13 @@ fn all_dominoes_fall() {
         .collect();
     stage.world.apply_impulse(dominoes[0], at!(0.2, 0), at!(-7.5, 1)).expect("valid");
     stage.run(600);
-    // Each one lies on the next, which is a metre away.
+    // Each one lies on the next, a metre away.
     for &id in &dominoes {
         assert!(stage.angle(id) < fx!(-1), "a domino stands at {} rad", stage.angle(id));
     }
 }
 
-/// Sample "Confined". More balls than a room can hold without overlap stay in it.
+/// Sample "Confined".
 #[test]
 fn a_crowded_room_does_not_leak() {
     let mut stage = Stage::weightless();
@@ -176,7 +175,7 @@ fn a_crowded_room_does_not_leak() {
     }
 }
 
-/// Sample "Card House". Cards 2 mm thick stand on each other by friction.
+/// Sample "Card House": 2 mm thick.
 #[test]
 fn a_house_of_cards_stands() {
     let mut stage = Stage::new();

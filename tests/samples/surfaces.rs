@@ -8,7 +8,7 @@ use lockstep2d::world::Explosion;
 
 use super::{Stage, ball, line, near, num, rect, rounded, square};
 
-/// Sample "Restitution". A body that falls from a height `h` bounces up to `e^2 h`.
+/// Sample "Restitution": up to `e^2 h`.
 #[test]
 fn a_bounce_returns_the_square_of_the_restitution() {
     for shape in [ball(fx!(0.5)), square(fx!(0.5))] {
@@ -23,7 +23,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
                 if bounced {
                     highest = highest.max(stage.place(body).y - fx!(0.5));
                 }
-                // The first bounce is the highest one if no energy is added.
+                // If no energy is added.
                 assert!(!bounced || highest < fx!(10.02), "{highest} m");
             });
             near(highest, fx_mul(restitution, restitution) * 10, fx!(0.25));
@@ -31,7 +31,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Sample "Friction". On a slope a box stays if `mu > tan(angle)`; otherwise it slides with `g (sin - mu cos)`.
+/// Sample "Friction": a box stays if `mu > tan(angle)`, and otherwise slides with `g (sin - mu cos)`.
 #[test]
 fn friction_decides_who_stays_on_the_slope() {
     let angle = Angle::from_radians(fx!(-0.25));
@@ -44,7 +44,7 @@ fn friction_decides_who_stays_on_the_slope() {
         let def = BodyDef::dynamic().angle(angle).position(Vec2::new(down, cos).scale(fx!(0.5)));
         let body = stage.spawn(def, &[square(fx!(0.5)).density(fx!(25)).friction(friction)]);
         stage.run(120);
-        // The geometric mean of the friction of both surfaces, sqrt(0.2 friction).
+        // Geometric mean, sqrt(0.2 friction).
         let mixed = lockstep2d::math::sqrt(friction / 5).expect("not negative");
         let pull = (down - fx_mul(mixed, cos)) * 10;
         let expected = if pull > 0 { pull * 2 } else { Fx::ZERO };
@@ -52,7 +52,7 @@ fn friction_decides_who_stays_on_the_slope() {
     }
 }
 
-/// Sample "Rolling Resistance". A ball with rolling resistance `c` stops after `v^2 / 2 a` with `a = 2/3 c g`.
+/// Sample "Rolling Resistance": `v^2 / 2 a` with `a = 2/3 c g`.
 #[test]
 fn rolling_resistance_decides_how_far_a_ball_gets() {
     for i in [2, 5, 10, 15] {
@@ -67,7 +67,7 @@ fn rolling_resistance_decides_how_far_a_ball_gets() {
     }
 }
 
-/// Sample "Conveyor Belt". A belt carries boxes at its speed and drops them at its end.
+/// Sample "Conveyor Belt".
 #[test]
 fn a_belt_carries_boxes_and_drops_them_at_its_end() {
     let mut stage = Stage::with_floor();
@@ -84,7 +84,7 @@ fn a_belt_carries_boxes_and_drops_them_at_its_end() {
     assert!(boxes.iter().all(|&id| stage.place(id).x > fx!(4.5) && stage.place(id).y < fx!(3)));
 }
 
-/// Sample "Tangent Speed". Each link of a chain is a belt of its own.
+/// Sample "Tangent Speed".
 #[test]
 fn each_link_of_a_chain_has_its_own_speed() {
     let mut stage = Stage::new();
@@ -95,15 +95,14 @@ fn each_link_of_a_chain_has_its_own_speed() {
     stage.spawn(BodyDef::fixed(), &chain);
     let boxes: Vec<_> =
         (0..5).map(|i| stage.add(Vec2::new(num(10 * i + 5), fx!(0.5)), square(fx!(0.5)))).collect();
-    // Friction 0.6 accelerates the fastest box to 5 m/s in 0.83 s. The box is then 2.1 m from the middle of its link.
+    // The fastest box reaches 5 m/s in 0.83 s, 2.1 m from the middle of its link.
     stage.run(60);
     for (&id, speed) in boxes.iter().zip(speeds) {
         near(stage.velocity(id).x, speed, fx!(0.02));
     }
 }
 
-/// Sample "Explosion". Balls in a ring, held by soft welds, get equal pushes outwards and return; meanwhile the welds
-/// turn them.
+/// Sample "Explosion". Meanwhile the welds turn the balls.
 #[test]
 fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut stage = Stage::weightless();
@@ -118,7 +117,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
     let blast = Explosion { radius: fx!(7), falloff: fx!(3), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     stage.world.explode(&blast).expect("valid");
-    // The nearest point is 7.5 m away: 10 N s/m times (1 - 0.5 / 3), times a width of 1 m.
+    // The nearest point is 7.5 m away: 10 N s/m times (1 - 0.5 / 3), times 1 m.
     let speed = fx_div(fx!(25 / 3), stage.body(ring[0].0).mass()).expect("positive");
     for &(body, _, place) in &ring {
         near(stage.velocity(body).length(), speed, fx!(0.01));
@@ -133,7 +132,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
         }
         stage.run(1);
     }
-    // The welds turn at a sixth of a turn per second.
+    // A sixth of a turn per second.
     let turn = lockstep2d::math::PI / 3;
     for &(body, _, place) in &ring {
         near(stage.place(body).distance(place), fx!(0), fx!(0.01));
@@ -141,7 +140,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
 }
 
-/// Sample "Box Restitution". Boxes on boxes gain no energy at any restitution.
+/// Sample "Box Restitution".
 #[test]
 fn boxes_on_boxes_make_no_energy() {
     for tenths in [0, 2, 5, 8, 10] {
@@ -161,8 +160,7 @@ fn boxes_on_boxes_make_no_energy() {
     }
 }
 
-/// Sample "Wind". A hanging chain in a steady wind leans by `atan(c u / g)`, where the wind `u` drags with the rate
-/// `c`.
+/// Sample "Wind". A chain leans by `atan(c u / g)` in a wind `u` that drags with the rate `c`.
 #[test]
 fn a_chain_leans_in_the_wind() {
     for shape in
@@ -182,7 +180,7 @@ fn a_chain_leans_in_the_wind() {
             links.push(link);
         }
         stage.run(1800);
-        // Every link feels 3 m/s² sideways and 10 m/s² down: tan = 0.3.
+        // 3 m/s² sideways and 10 m/s² down.
         for &link in &links {
             near(stage.angle(link), fx!(0.29146), fx!(0.01));
         }

@@ -2,17 +2,16 @@
 
 use std::collections::BTreeSet;
 
-/// The tests that a page names, as `module::function` in backquotes.
+/// As `module::function` in backquotes.
 fn named(page: &str) -> BTreeSet<String> {
     page.split('`').filter(|word| word.contains("::") && is_test_name(word)).map(str::to_owned).collect()
 }
 
-/// Whether a name is that of a test. Names of types, and of methods with their types, begin with a capital letter.
+/// Names of types begin with a capital letter.
 fn is_test_name(word: &str) -> bool {
     word.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == ':')
 }
 
-/// The tests of a source file.
 fn tests_of(module: &str, source: &str) -> Vec<String> {
     let name = |after: &str| after.trim_start().strip_prefix("fn ")?.split('(').next().map(str::to_owned);
     source.split("#[test]").skip(1).filter_map(name).map(|name| format!("{module}::{name}")).collect()

@@ -1,5 +1,4 @@
-//! Box2D's groups "World", "Determinism" and "Benchmark". The large benchmarks are scenes of `crates/scenes`, with
-//! replays of their own.
+//! Box2D's groups "World", "Determinism" and "Benchmark". `crates/scenes` has the large benchmarks.
 
 use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +8,7 @@ use lockstep2d::world::{BodyPose, Explosion, QueryFilter, World};
 
 use super::{Stage, ball, capsule, line, near, num, rect, rounded, square};
 
-/// Sample "Tiles". Boxes lie on columns of rounded tiles; explosions throw them up, and none gets through.
+/// Sample "Tiles".
 #[test]
 fn tiles_carry() {
     let mut stage = Stage::new();
@@ -19,7 +18,7 @@ fn tiles_carry() {
         let tiles: Vec<ShapeDef> = (0..height.round().to_num::<i32>() + 12).map(tile).collect();
         stage.spawn(BodyDef::fixed().position(Vec2::new(num(column), Fx::ZERO)), &tiles);
     }
-    // The valley is in the middle, with its floor at a height of 7.5 m.
+    // The valley is in the middle, 7.5 m high.
     let place = |i: i32| Vec2::new(fx!(17) + fx!(0.6) * i64::from(i % 10), fx!(10) + num(i / 10) / 2);
     let boxes: Vec<_> = (0..50).map(|i| stage.add(place(i), rect(fx!(0.3), fx!(0.2)))).collect();
     for tick in 0..600 {
@@ -36,8 +35,7 @@ fn tiles_carry() {
     assert!(stage.fastest() < fx!(0.1), "still {} m/s", stage.fastest());
 }
 
-/// Simulates a pyramid and a row of hinged links at a place. Returns their final positions relative to that place, and
-/// their angles.
+/// A pyramid and a row of hinged links. Returns final positions relative to `origin`, and angles.
 fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     let mut stage = Stage::new();
     let walls =
@@ -64,9 +62,9 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     dynamic.map(|(_, body)| (body.position() - origin, body.angle())).collect()
 }
 
-/// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin no precision is lost: results
-/// agree within 10 µm everywhere. Results near the origin and far to the left and below are equal to the last bit, and
-/// so are all results far to the right and above.
+/// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin, results agree within 10 µm.
+/// Results far to the left and below are bit-identical to results near the origin. Results far to the right and above
+/// are bit-identical to each other.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));
@@ -81,7 +79,7 @@ fn the_world_is_the_same_everywhere() {
     }
 }
 
-/// Falling Hinges: rows of hinged boxes that fall in a heap.
+/// Rows of hinged boxes that fall in a heap.
 fn falling_hinges() -> World {
     let mut stage = Stage::with_floor();
     for column in 0..2 {
@@ -100,7 +98,7 @@ fn falling_hinges() -> World {
     stage.world
 }
 
-/// Runs until all bodies sleep. Returns the number of ticks and the state hash.
+/// Returns the number of ticks and the state hash.
 fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     while world.awake_body_count() > 0 && world.tick() < 3000 {
         world.step();
@@ -111,8 +109,7 @@ fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     (world.tick(), world.state_hash())
 }
 
-/// Samples "Falling Hinges" and "Rollback". All bodies sleep in the same tick with the same hash in every run, and from
-/// every saved state.
+/// Samples "Falling Hinges" and "Rollback".
 #[test]
 fn falling_hinges_end_alike_from_every_saved_state() {
     let mut world = falling_hinges();
@@ -131,7 +128,7 @@ fn falling_hinges_end_alike_from_every_saved_state() {
     }
 }
 
-/// Sample "Barrel". A hundred bodies of one kind fall into a barrel and stay in it.
+/// Sample "Barrel".
 #[test]
 fn a_barrel_holds_what_falls_into_it() {
     let mix = [square(fx!(0.25)), rect(fx!(0.4), fx!(0.1))];
@@ -159,7 +156,7 @@ fn a_barrel_holds_what_falls_into_it() {
     }
 }
 
-/// Sample "Many Tumblers". Drums that turn carry their boxes round and lose none.
+/// Sample "Many Tumblers".
 #[test]
 fn tumblers_lose_nothing() {
     let mut stage = Stage::new();
@@ -183,7 +180,7 @@ fn tumblers_lose_nothing() {
     });
 }
 
-/// Sample "CreateDestroy". Pyramids are built and removed over and over; slots are used again, and nothing is left.
+/// Sample "CreateDestroy".
 #[test]
 fn what_is_removed_leaves_nothing() {
     let mut stage = Stage::with_floor();
@@ -203,8 +200,7 @@ fn what_is_removed_leaves_nothing() {
     }
 }
 
-/// Benchmark samples "Sleep" and "Kinematic". A sleeping pyramid is woken as a whole and sleeps again; a large
-/// kinematic body of many shapes turns exactly.
+/// Benchmark samples "Sleep" and "Kinematic".
 #[test]
 fn a_pyramid_is_woken_as_a_whole() {
     let mut stage = Stage::with_floor();
@@ -230,8 +226,7 @@ fn a_pyramid_is_woken_as_a_whole() {
     near(stage.angle(body), fx!(1), fx!(0.0001));
 }
 
-/// Sample "Capacity". Rows of boxes are added until there are a thousand; the world stays valid, and its counters
-/// agree.
+/// Sample "Capacity".
 #[test]
 fn the_world_grows() {
     let mut stage = Stage::with_floor();

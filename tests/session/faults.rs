@@ -1,17 +1,15 @@
-//! Faults that are planted in the protocol break an invariant in some match, which proves that the simulation finds
-//! them.
+//! Planted faults break an invariant in some match.
 
 use lockstep2d::session::Fault;
 
 use super::{storm, sweep};
 
-/// Largest number of matches that are played with a fault until one breaks an invariant.
+/// Largest number of matches with a fault.
 const MATCHES: u64 = 300;
-/// Largest number of matches for a fault that breaks an invariant in about one of a thousand storms. Such a fault is
-/// only searched for in the long run.
+/// For a fault that breaks an invariant in about one of a thousand storms, in the long run.
 const MATCHES_RARE: u64 = 2000;
 
-/// Each fault, the first seed, and the step to the next seed. With a step of 10, all matches are of one `Class`.
+/// Each fault, the first seed, and the step of seeds. With a step of 10, all matches are of one `Class`.
 const FAULTS: [(Fault, u64, u64); 13] = [
     (Fault::NoFreeze, 0, 1),
     (Fault::OwnCut, 0, 1),

@@ -1,31 +1,29 @@
-//! A game whose state is a hash of all inputs: two peers have the same state only if they played the same history.
+//! The state is a hash of all inputs.
 
 use lockstep2d::session::{Request, Session, Tick, TickInputs};
 
-/// Mixes a value into a hash.
 pub(crate) fn mix(hash: u64, value: u64) -> u64 {
     let mixed = hash.rotate_left(23) ^ value.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     mixed ^ mixed >> 32
 }
 
-/// Mixes the inputs of a tick into a hash. Predicted inputs are mixed in like received ones.
+/// Predicted inputs are mixed in like received ones.
 pub(crate) fn mix_inputs(hash: u64, inputs: &TickInputs) -> u64 {
     let hash = inputs.bytes().iter().fold(hash, |hash, &byte| mix(hash, u64::from(byte)));
     mix(hash, inputs.absent())
 }
 
-/// The state before the first tick.
 pub(crate) const START: u64 = 1;
 
-/// The states that a peer has played: `states[t]` is the state before tick `t`.
+/// `states[t]` is the state before tick `t`.
 #[derive(Debug)]
 pub(crate) struct Game {
     pub(crate) states: Vec<u64>,
     saved: Vec<(Tick, u64)>,
-    /// Number of simulated ticks, including repeated ones.
+    /// Including repeated ones.
     pub(crate) simulated: u64,
-    /// The tick in which this game computes a wrong state on purpose.
+    /// The tick in which a wrong state is computed on purpose.
     pub(crate) mistake: Option<Tick>,
 }
 
@@ -34,7 +32,7 @@ impl Game {
         Game { states: vec![START], saved: Vec::new(), simulated: 0, mistake: None }
     }
 
-    /// Fulfils all requests. Fails with a message on one that cannot be fulfilled.
+    /// Fails on a request that cannot be fulfilled.
     pub(crate) fn fulfil(&mut self, session: &mut Session) -> Result<(), String> {
         while let Some(request) = session.next_request() {
             match request {
@@ -79,7 +77,6 @@ impl Game {
         self.mistake.is_some()
     }
 
-    /// Number of states that are kept for rollbacks.
     pub(crate) fn kept(&self) -> usize {
         self.saved.len()
     }

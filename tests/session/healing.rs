@@ -1,10 +1,10 @@
-//! Liveness after the links of a random match have healed: all peers that are alive play, and finish.
+//! After the links of a match have healed, all living peers play, and finish.
 
 use super::sim::{MS, S, Sim, id};
 use super::storm::{Class, Figures, HEAL, Match, SEATED};
 
 impl Match {
-    /// Ends the disturbances of a storm, and measures the time until all peers have their seats.
+    /// Ends the disturbances, and measures the time until all peers have their seats.
     pub(super) fn heal(&mut self, figures: &mut Figures) {
         if self.class.is_storm() {
             self.sim.late = 0;
@@ -26,7 +26,7 @@ impl Match {
         figures.healed = at - HEAL;
     }
 
-    /// Peers that run, do not leave and were not kicked: these should play on.
+    /// Peers that run, do not leave and were not kicked.
     pub(super) fn alive(&self) -> Vec<usize> {
         let alive = |&index: &usize| {
             let peer = &self.sim.peers[index];
@@ -35,12 +35,12 @@ impl Match {
         (0..self.total).filter(alive).collect()
     }
 
-    /// Whether all living peers have their seats in the newest view. `None` if they cannot all reach each other, or
-    /// are no quorum of that view.
+    /// Whether all living peers have seats in the newest view. `None` if they cannot all reach each other, or are no
+    /// quorum.
     pub(super) fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
-        // A view that only crashed peers have installed does not count, because no living peer knows it.
+        // No living peer knows a view that only crashed peers have installed.
         let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
         let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);

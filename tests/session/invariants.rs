@@ -1,4 +1,4 @@
-//! Invariants of a match: one history, equal states, and a quorum that holds all ticks before the cut of a view.
+//! One history, equal states, and a quorum that holds all ticks before the cut of a view.
 
 use lockstep2d::session::{Event, PeerId, Status, View};
 
@@ -6,7 +6,7 @@ use super::game::mix_inputs;
 use super::sim::{MS, S, Sim, id};
 
 impl Sim {
-    /// Checks everything that must always hold, for a peer after each of its steps.
+    /// Checks a peer after each of its steps.
     pub(super) fn check(&mut self, index: usize) {
         self.check_events(index);
         self.check_view(index);
@@ -43,12 +43,12 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// A peer that has left stops answering only when all others know that it has left, or after a long time.
+    /// A peer that has left answers until all others know that, or for a long time.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
         let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
-        // The wait is limited: later changes of the view do not extend it.
+        // Later changes of the view do not extend the wait.
         if !left || self.now > leaver.left_at + 11 * S {
             return;
         }
@@ -109,7 +109,7 @@ impl Sim {
         }
     }
 
-    /// The final ticks of a peer belong to the history that all peers share.
+    /// Final ticks belong to the shared history.
     fn check_final(&mut self, index: usize) {
         let fin = self.peers[index].session.final_tick();
         let from = self.peers[index].seen_final;
@@ -136,7 +136,7 @@ impl Sim {
         self.peers[index].seen_final = fin;
     }
 
-    /// The confirmed ticks that the game has played belong to the history that all peers share; memory is bounded.
+    /// Confirmed ticks belong to the shared history; memory is bounded.
     fn check_played(&mut self, index: usize) {
         let peer = &self.peers[index];
         let confirmed = peer.session.confirmed();

@@ -1,4 +1,4 @@
-//! Joining: strangers, states in chunks, late joins while the others play, spectators, changed addresses.
+//! Joining a match.
 
 use lockstep2d::session::{Endpoint, Identity, JoinEvent, Key, PeerId, RefusalReason, Role, Status};
 
@@ -13,7 +13,7 @@ fn players_join_while_the_others_play_at_full_speed() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(6 * S);
     net.assert_all_play();
-    // The third peer contacts the second one, from which alone it receives the address of the first.
+    // The third peer receives the address of the first from its contact, the second.
     net.join(Role::Player { seats: 2 }, 2);
     net.run(10 * S);
     net.assert_all_play();
@@ -23,7 +23,7 @@ fn players_join_while_the_others_play_at_full_speed() {
         "the host has found the address of the third one"
     );
     assert!(net.nodes[0].stall <= 60 * MS, "{} us", net.nodes[0].stall);
-    // The match is full: the next peer gets no seat.
+    // The match is full.
     net.join(Role::Player { seats: 1 }, 1);
     net.run(14 * S);
     assert_eq!(net.status(3), Some(Status::Joining));
@@ -49,7 +49,7 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
-/// The players keep playing while a state of 40 MB is sent to a joining peer, over links with a loss of 0 and 1 %.
+/// Over links with a loss of 0 and 1 %.
 #[test]
 fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     for loss in [0, 1] {
@@ -72,7 +72,7 @@ fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     }
 }
 
-/// A spectator whose contact crashes is served by another player, and continues from the ticks that it has.
+/// Another player serves the spectator, which continues from its ticks.
 #[test]
 fn a_spectator_whose_contact_goes_finds_another() {
     let mut net = Net::new(20 * MS, 1, 1000);
@@ -95,7 +95,7 @@ fn nothing_is_sent_to_an_address_that_has_not_answered() {
     let mut net = Net::new(10 * MS, 0, 50_000);
     net.host();
     net.run(S);
-    // Forged hellos of a peer that does not exist, with the address of a victim as their sender.
+    // Forged hellos with the address of a victim.
     let mut forged = Endpoint::join(config(), identity(7), Role::Spectator, address(1)).expect("valid");
     let mut sent = 0;
     for _ in 0..100 {
@@ -123,7 +123,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Six spectators, each of which joins through the previous one. Each is known only to its own contact.
+/// Six spectators, each known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);
@@ -143,7 +143,7 @@ fn spectators_feed_spectators() {
     net.assert_all_play();
 }
 
-/// A NAT gives a player another port: the player is found under its new address, and keeps its seat.
+/// A NAT gives a player another port.
 #[test]
 fn an_address_may_change() {
     let mut net = Net::new(30 * MS, 0, 1000);
@@ -158,7 +158,7 @@ fn an_address_may_change() {
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
-/// Two of three peers cannot reach each other: the third one relays everything.
+/// Two of three peers cannot reach each other.
 #[test]
 fn somebody_in_between_relays() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -172,7 +172,7 @@ fn somebody_in_between_relays() {
     assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 3);
 }
 
-/// A process that crashes and restarts gets its old seat back, as a new incarnation with the same key.
+/// A new incarnation with the same key.
 #[test]
 fn a_restarted_process_gets_its_seat_back() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -192,7 +192,7 @@ fn a_restarted_process_gets_its_seat_back() {
     assert_eq!(net.nodes[index].endpoint.session().expect("valid").seats(), 0b10);
 }
 
-/// The contact crashes during the download, and the joining peer contacts another one.
+/// The contact crashes during the download.
 #[test]
 fn another_contact_can_be_asked() {
     let mut net = Net::new(20 * MS, 0, 40 << 20);

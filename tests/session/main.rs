@@ -1,5 +1,4 @@
-//! Whole matches of sessions in simulated time, over links that delay, drop, duplicate and reorder packets, and
-//! that fail for a while.
+//! Whole matches in simulated time, over links that delay, drop, duplicate, reorder and fail.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -23,14 +22,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use lockstep2d_tests::sweep;
 
-/// Number of seeds of a full run, which may take 30 minutes on two cores.
+/// Seeds of a full run, of up to 30 minutes on two cores.
 const SEEDS: u64 = 100_000;
 /// Number of seeds of a sampled run.
 const SAMPLE: u64 = 100;
 
-/// A match in which enough peers survive and are connected plays more ticks than this.
+/// A match in which enough peers survive and are connected plays more ticks.
 const TICKS_MIN: u64 = 20;
-/// Almost all matches play at least this many ticks: the first planned end is after 4 s.
+/// Almost all matches play at least this many: the first planned end is after 4 s.
 const TICKS_USUAL: u64 = 40;
 
 #[test]
@@ -40,7 +39,7 @@ fn every_invariant_holds_in_storms() {
     sweep::for_each((0..seeds).collect(), |seed| {
         let (failure, figures) = storm::play(seed, |_| ());
         assert_eq!(failure, None, "seed {seed}: {figures:?}");
-        // A match that has ended also counts as one without a quorum.
+        // A match that has ended counts as one without a quorum.
         let stopped = figures.no_quorum == 1 && figures.finished == 0;
         assert!(figures.ticks > TICKS_MIN || stopped, "seed {seed}: {figures:?}");
         short.fetch_add(u64::from(figures.ticks < TICKS_USUAL), Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Endpoints that join a match in simulated time: identities, addresses, and states that are transferred.
+//! Endpoints that join a match in simulated time.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -8,7 +8,7 @@ use lockstep2d::session::{Address, Config, Endpoint, Identity, JoinEvent, Reques
 use super::game::{START, mix_inputs};
 use super::sim::{MS, Rng, S, Us, id, key};
 
-/// An endpoint with a game whose state is a hash, followed by bytes that only make the state larger.
+/// The state is a hash, followed by bytes that make it larger.
 pub(super) struct Node {
     pub(super) endpoint: Endpoint,
     pub(super) address: u8,
@@ -19,17 +19,14 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks, the second of which is after the first two seconds of simulated time. Tests set
-    /// it to 0 to measure what follows.
+    /// Longest time between two ticks, the second of them after two seconds. Tests reset it to 0.
     pub(super) stall: Us,
-    /// Time of the last tick.
     pub(super) last_tick: Us,
 }
 
-/// A packet on its way: when it arrives, its number, sender, receiver and bytes.
+/// Arrival, number, sender, receiver and bytes.
 pub(super) type Datagram = (Us, u64, u8, u8, Vec<u8>);
 
-/// Endpoints, and the network between them.
 pub(super) struct Net {
     pub(super) now: Us,
     pub(super) rng: Rng,
@@ -39,9 +36,9 @@ pub(super) struct Net {
     pub(super) latency: Us,
     pub(super) loss: u64,
     pub(super) state_bytes: usize,
-    /// Number of bytes sent to each address.
+    /// To each address.
     pub(super) sent_to: [u64; 256],
-    /// Number of bytes received from each address.
+    /// From each address.
     pub(super) received_from: [u64; 256],
     pub(super) blocked: Vec<(u8, u8)>,
 }

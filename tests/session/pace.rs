@@ -1,10 +1,10 @@
-//! Pace: lockstep plays at full speed with a delay of the one-way latency and a tick, with clocks of different speeds.
+//! Lockstep plays at full speed with a delay of the one-way latency and a tick.
 
 use lockstep2d::session::{Config, Role, View};
 
 use super::sim::{LinkConditions, MS, S, Sim, Us, id, key};
 
-/// A match of players that call their sessions every millisecond.
+/// Sessions are called every millisecond.
 pub(crate) fn players(count: usize, link: LinkConditions, configure: impl Fn(&mut Config)) -> Sim {
     let mut sim = Sim::new(count as u64 + link.latency, count);
     sim.look = MS;
@@ -29,8 +29,7 @@ pub(crate) fn link(latency: Us) -> LinkConditions {
     LinkConditions { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
 }
 
-/// Returns the pace of the slowest peer over some seconds after a start of 5 s, in hundredths of a confirmed tick per
-/// second.
+/// Pace of the slowest peer after 5 s, in hundredths of a confirmed tick per second.
 pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     let played =
         |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
@@ -41,7 +40,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// Returns the documented delay in ticks: the latency plus one tick. The interval of the calls adds a millisecond.
+/// The latency plus one tick. Calls add a millisecond.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }
@@ -106,7 +105,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
     }
 }
 
-/// Measured ping, jitter and loss equal those of the links; bytes are counted.
+/// Measured ping, jitter and loss equal those of the links.
 #[test]
 fn measurements_are_those_of_the_links() {
     let mut sim = players(2, LinkConditions { jitter: 10 * MS, loss: 20, ..link(50 * MS) }, |_| ());

@@ -1,5 +1,4 @@
-//! A match in simulated time: peers with clocks of their own, and links that delay, drop, duplicate and reorder
-//! packets, and that fail for a while.
+//! A match in simulated time. Links delay, drop, duplicate and reorder packets, and fail for a while.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -12,7 +11,6 @@ pub(crate) type Us = u64;
 pub(crate) const MS: Us = 1000;
 pub(crate) const S: Us = 1_000_000;
 
-/// Pseudo-random numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Rng(pub(crate) u64);
 
@@ -24,7 +22,7 @@ impl Rng {
         self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11
     }
 
-    /// A number from `low` to `high`.
+    /// Inclusive.
     pub(crate) fn range(&mut self, low: u64, high: u64) -> u64 {
         low + self.next() % (high - low + 1)
     }
@@ -38,7 +36,7 @@ impl Rng {
     }
 }
 
-/// Conditions of the link from one peer to another.
+/// One direction of a link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkConditions {
     pub(crate) exists: bool,
@@ -46,11 +44,10 @@ pub(crate) struct LinkConditions {
     /// Largest addition to the latency.
     pub(crate) jitter: Us,
     pub(crate) loss: u64,
-    /// Packets that are sent before this time are lost.
+    /// Packets that are sent earlier are lost.
     pub(crate) cut_until: Us,
 }
 
-/// A peer of the simulation.
 #[derive(Debug)]
 pub(crate) struct Peer {
     pub(crate) session: Session,
@@ -61,20 +58,18 @@ pub(crate) struct Peer {
     pub(crate) kicked: bool,
     pub(crate) spectator: bool,
     pub(crate) stopped_until: Us,
-    /// Speed of the clock, in thousandths of that of simulated time.
+    /// In thousandths of the speed of simulated time.
     pub(crate) skew: u64,
     pub(crate) queue: Vec<Vec<u8>>,
     pub(crate) lost_seats: u32,
-    /// Whether the peer is in a menu, so that its game does not advance.
+    /// The game does not advance.
     pub(crate) in_menu: bool,
-    /// Peers that the session reported to wait for. The flag tells whether that peer is heard, also through others.
+    /// Peers that the session reported to wait for. The flag tells whether the peer is heard, also through others.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
-    /// Whether the session has reported `Status::Leaving`.
     pub(crate) was_leaving: bool,
-    /// Time at which the session reported that it has left.
     pub(crate) left_at: Us,
     pub(crate) seen_view: u32,
     pub(crate) seen_final: Tick,
@@ -82,7 +77,6 @@ pub(crate) struct Peer {
     input: u64,
 }
 
-/// Kind of a simulated event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Look(usize),
@@ -90,7 +84,6 @@ enum Kind {
     Crash(usize),
 }
 
-/// A match.
 pub(crate) struct Sim {
     pub(crate) now: Us,
     pub(crate) rng: Rng,
@@ -100,14 +93,14 @@ pub(crate) struct Sim {
     free: Vec<usize>,
     pub(crate) peers: Vec<Peer>,
     pub(crate) links: Vec<Vec<LinkConditions>>,
-    /// Percentage of packets that are very late.
+    /// Percentage of very late packets.
     pub(crate) late: u64,
-    /// Percentage of packets that are duplicated.
+    /// Percentage of packets.
     pub(crate) doubled: u64,
     /// Percentage of new views at which a peer crashes.
     pub(crate) assassin: u64,
     pub(crate) look: Us,
-    /// State before each tick of the history that all peers share.
+    /// Shared by all peers: the state before each tick.
     pub(crate) history: Vec<u64>,
     pub(crate) views: BTreeMap<u32, View>,
     pub(crate) failure: Option<String>,
@@ -182,7 +175,6 @@ impl Sim {
         index
     }
 
-    /// Starts a peer.
     pub(crate) fn start(&mut self, index: usize, at: Us) {
         self.peers[index].on = true;
         self.peers[index].started = true;
@@ -193,7 +185,7 @@ impl Sim {
         self.push(at, Kind::Crash(index));
     }
 
-    /// Attaches the sessions of two peers to each other, as a join does.
+    /// As a join does.
     pub(crate) fn introduce(&mut self, a: usize, b: usize) {
         self.peers[a].session.attach(id(b), Some(key(b)));
         self.peers[b].session.attach(id(a), Some(key(a)));
@@ -209,7 +201,7 @@ impl Sim {
         self.heap.push(Reverse((at, self.sequence, kind)));
     }
 
-    /// Runs until a time, or to the first failure.
+    /// Until a time, or to the first failure.
     pub(crate) fn run(&mut self, until: Us) {
         while let Some(&Reverse((at, _, kind))) = self.heap.peek() {
             if at > until || self.failure.is_some() {
@@ -327,12 +319,11 @@ impl Sim {
         self.push(at, Kind::Packet(place));
     }
 
-    /// Bytes that a peer has sent.
     pub(crate) fn bytes_from(&self, index: usize) -> u64 {
         self.peers[index].bytes
     }
 
-    /// Bit set of the running peers that `from` can reach, directly or through others.
+    /// Bit set of the running peers that `from` can reach, also through others.
     pub(crate) fn reach(&self, from: usize) -> u64 {
         let mut seen = 1_u64 << from;
         for _ in 0..self.peers.len() {
@@ -349,12 +340,12 @@ impl Sim {
         seen
     }
 
-    /// The newest view that any peer has installed.
+    /// That any peer has installed.
     pub(crate) fn newest_view(&self) -> &View {
         self.views.last_key_value().expect("the first view").1
     }
 
-    /// Bit set of the places of peers among the voters of a view, for quorums.
+    /// Bit set of places among the voters, for quorums.
     pub(crate) fn voters_among(view: &View, peers: impl Iterator<Item = usize>) -> u64 {
         peers.filter_map(|index| view.voter(id(index))).fold(0, |set, index| set | 1 << index)
     }

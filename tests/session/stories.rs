@@ -1,4 +1,4 @@
-//! Single scenarios: outages of two players, kicks, ends, returns, spectators, mistakes of the game.
+//! Single scenarios.
 
 use lockstep2d::session::{Config, Role, Status};
 
@@ -18,8 +18,6 @@ fn status(sim: &Sim, index: usize) -> Status {
     sim.peers[index].session.status()
 }
 
-/// With two players the host goes on and the guest waits. When the link is back, the guest has its seat again, and
-/// both have the same history.
 #[test]
 fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     let mut sim = players(2, link(30 * MS), |_| ());
@@ -36,7 +34,7 @@ fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     assert_eq!(sim.failure, None);
 }
 
-/// With infinite patience every peer waits, until the host votes to go on without the missing one.
+/// Every peer waits until the host votes to go on without the missing one.
 #[test]
 fn with_infinite_patience_somebody_has_to_ask() {
     let mut sim = players(3, link(30 * MS), |config| config.timing.patience = u64::MAX);
@@ -91,7 +89,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
-/// Peer 0 has the casting vote (`View::tie_holder`) and can remove a peer alone. Other peers need a quorum of votes.
+/// Peer 0 could remove a peer alone: it is the `View::tie_holder`. Other peers need a quorum of votes.
 #[test]
 fn two_votes_of_five_kick_nobody_and_three_do() {
     let mut sim = players(5, link(30 * MS), |_| ());
@@ -121,7 +119,7 @@ fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
     assert_eq!(sim.failure, None);
 }
 
-/// A spectator that knows only one peer follows the match, and takes no seat from a player.
+/// Spectators take no seats.
 #[test]
 fn spectators_watch_through_one_another() {
     let count = 6;
@@ -147,7 +145,7 @@ fn spectators_watch_through_one_another() {
     assert_eq!(sim.failure, None);
 }
 
-/// A match that starts with one peer begins when enough seats are taken, at tick 0 for all of them.
+/// It is tick 0 for all of them.
 #[test]
 fn the_first_tick_waits_for_enough_players() {
     let configure = |config: &mut Config| (config.seats, config.start_with) = (4, 3);
@@ -171,7 +169,7 @@ fn the_first_tick_waits_for_enough_players() {
     assert_eq!(sim.failure, None);
 }
 
-/// An end that is requested at once neither starts the match nor shuts out players that have not joined yet.
+/// An end that is requested at once neither starts the match nor shuts out players.
 #[test]
 fn a_match_whose_end_is_known_waits_for_its_players() {
     let mut sim = Sim::new(2, 2);
@@ -218,7 +216,7 @@ fn somebody_who_leaves_costs_no_waiting() {
     assert_eq!(sim.failure, None);
 }
 
-/// A match of 64 peers that are all players advances at nearly full speed.
+/// All of them are players.
 #[test]
 fn sixty_four_peers_play() {
     let mut sim = players(64, link(40 * MS), |config| config.tick_micros = 33_333);

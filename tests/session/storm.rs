@@ -1,12 +1,12 @@
-//! Random matches: a seed determines the peers, the links and the disturbances. All links heal after 20 s. If the peers
-//! that still take part are then connected and a quorum of the newest view, they have to play and to finish the match.
+//! Random matches. A seed determines peers, links and disturbances. All links heal after 20 s. Peers that still take
+//! part, are connected and are a quorum of the newest view then have to play and to finish the match.
 
 use lockstep2d::session::{Config, Role, Timing, View};
 
 use super::game::mix;
 use super::sim::{LinkConditions, MS, Rng, S, Sim, Us, id, key};
 
-/// Kind of a match, chosen by the last digit of the seed.
+/// By the last digit of the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     ShortOutages,
@@ -34,7 +34,7 @@ const CLASSES: [Class; 10] = [
     Class::StormWithEnd,
 ];
 
-/// A disturbance of a match: a fault of the network or of a process, or an action of a player.
+/// Faults of the network or of a process, and actions of players.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Trouble {
     Halves,
@@ -81,7 +81,6 @@ impl Class {
     }
 }
 
-/// Figures of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Figures {
     pub(crate) ticks: u64,
@@ -90,18 +89,18 @@ pub(crate) struct Figures {
     pub(crate) bytes: u64,
     pub(crate) finished: u64,
     pub(crate) lost_seats: u64,
-    /// Time until all were seated again after the links healed.
+    /// From the healing of the links until all are seated again.
     pub(crate) healed: Us,
-    /// 1 if no quorum of the newest view is alive and connected after the links healed, else 0.
+    /// 1 if no quorum of the newest view is alive and connected after the links healed.
     pub(crate) no_quorum: u64,
 }
 
 pub(super) const HEAL: Us = 20 * S;
-/// Time after `HEAL` within which all peers must be seated.
+/// After `HEAL`, until all peers are seated.
 pub(super) const SEATED: Us = 12 * S;
-/// Time within which all seated peers should advance.
+/// In which all seated peers should advance.
 const MOVED: Us = 3 * S;
-/// Events that are planned for this time or later happen after the match has been checked for healing.
+/// From this time on, events happen after the match has been checked for healing.
 const LATE: Us = 100 * S;
 
 pub(super) struct Match {
@@ -112,7 +111,7 @@ pub(super) struct Match {
     pub(super) total: usize,
 }
 
-/// Plays the match of a seed, with a change of the configuration. Returns the first violation, and figures.
+/// Returns the first violation, and figures.
 pub(crate) fn play(seed: u64, configure: impl Fn(&mut Config)) -> (Option<String>, Figures) {
     let mut game = Match::new(seed, configure);
     let mut figures = Figures::default();
@@ -221,7 +220,7 @@ impl Match {
         self.check_healed(figures);
         let now = self.sim.now;
         let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
-        // If a peer has just crashed, the other peers stop for `patience` and a change of the view.
+        // After a crash, the other peers stop for `patience` and a change of the view.
         for wait in [MOVED, 3 * MOVED, 5 * MOVED] {
             if !self.run(now + wait) {
                 return;
@@ -380,7 +379,7 @@ impl Match {
     }
 }
 
-/// Removes random links, so that the links that are left still connect all peers.
+/// Removes random links, but keeps all peers connected.
 fn sparse(sim: &mut Sim, total: usize, rng: &mut Rng) {
     let mut set = |a: usize, b: usize, exists: bool| {
         sim.links[a][b].exists = exists;

@@ -1,4 +1,4 @@
-//! The encodings of every command and of its parts are as the tables of `docs/FORMAT.md` specify.
+//! Commands and their parts are encoded as the tables of `docs/FORMAT.md` specify.
 
 use lockstep2d::body::{
     Area, BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Falloff, Filter, Geometry,
@@ -14,7 +14,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
-/// Expected bytes, written field by field as in the tables of the document.
+/// Expected bytes, field by field as in the tables.
 #[derive(Clone, Default)]
 struct Written(Vec<u8>);
 
@@ -34,7 +34,7 @@ impl Written {
         self
     }
 
-    /// Appends world quantities, which are given in units of one half.
+    /// Appends world quantities, given in halves.
     fn fx(mut self, halves: &[i64]) -> Self {
         for half in halves {
             self.0.extend((half << 31).to_le_bytes());
@@ -49,7 +49,7 @@ impl Written {
         self
     }
 
-    /// Appends an `Option` of world quantities, which are given in units of one half.
+    /// Appends `Some` of world quantities, given in halves.
     fn some(self, halves: &[i64]) -> Self {
         self.u8(1).fx(halves)
     }
@@ -75,7 +75,7 @@ struct Handles {
     joint: JointId,
 }
 
-/// Returns handles of a world in which a second body and shape reuse a slot, with a joint.
+/// A second body and shape reuse a slot.
 fn handles() -> Result<Handles, WorldError> {
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(1))?);
@@ -96,18 +96,18 @@ fn shape_id() -> Written {
     w().u32(0).u32(1)
 }
 
-/// A rounded triangle in which no setting has its default value.
+/// No setting has its default value.
 fn polygon() -> (ShapeDef, Written) {
     polygon_with(None, w().u8(1))
 }
 
-/// The triangle of [`polygon`] as an area in which every effect is present.
+/// The triangle of [`polygon`] as an area.
 fn pool() -> (ShapeDef, Written) {
     let (area, bytes) = area();
     polygon_with(Some(area), w().u8(3).then(bytes))
 }
 
-/// An area with all effects.
+/// All effects are present.
 fn area() -> (Area, Written) {
     let area = Area::fluid(fx!(9)).drag(fx!(7), fx!(8)).flow((fx!(5), fx!(6))).force((fx!(3), fx!(4)));
     let area = area.acceleration((fx!(1), fx!(2))).attraction(fx!(-1), fx!(2), Falloff::InverseSquare);
@@ -115,7 +115,7 @@ fn area() -> (Area, Written) {
     (area, bytes)
 }
 
-/// The triangle as a sensor, with an area if one is given. `sensor` contains the bytes of its flags and of the area.
+/// `sensor` contains the bytes of the flags and of the area.
 fn polygon_with(area: Option<Area>, sensor: Written) -> (ShapeDef, Written) {
     let material = Material {
         friction: fx!(0.5),
@@ -172,7 +172,7 @@ fn mass() -> (MassSource, Written) {
     (MassSource::Given { mass: fx!(2), centre, gyration: fx!(0.5) }, w().u32(1).fx(&[4, 2, -1, 1]))
 }
 
-/// Joints of each kind between two bodies, with different optional parts present.
+/// Each kind, with different optional parts.
 fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
     let (one, two, three) = (fx!(1), fx!(2), fx!(3));
     let distance = Distance::rod(one).limit(one, two).motor(one, two).spring(one, two, three);
@@ -226,7 +226,7 @@ fn geometries() -> [(Geometry, Written); 4] {
     ]
 }
 
-/// Returns every command with its bytes, in the order of the document's table.
+/// In the order of the document's table.
 fn cases(handles: &Handles) -> Vec<(Command, Written)> {
     let &Handles { body, other, shape, joint } = handles;
     let vector = Vec2::new(fx!(1), fx!(-0.5));
@@ -311,7 +311,6 @@ fn the_bytes_of_commands_are_those_of_the_document() {
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 
-/// Settings of a world with their bytes.
 fn settings_of_world() -> (Config, Written) {
     let solver = SolverSettings {
         contact: ContactTuning::Baumgarte { share: fx!(0.5), slop: fx!(1), push_speed: fx!(3) },
@@ -332,7 +331,7 @@ fn the_bytes_of_a_setup_are_those_of_the_document() {
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
 }
 
-/// Reports name every value of an area. A sensor without an area is listed as `sensor` only.
+/// Reports name every value of an area. A sensor without one is listed as `sensor` only.
 #[test]
 fn an_area_is_listed_by_its_names() {
     let paths = |def: &ShapeDef| -> Vec<String> {

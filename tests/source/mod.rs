@@ -1,23 +1,22 @@
-//! Source files as tokens, for the tests that check rules of the code base.
+//! Source files as tokens, for tests that check rules of the code base.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A text file of this repository.
 pub(crate) struct Source {
-    /// Path relative to the root of the repository, with `/` on every system.
+    /// Relative to the root of the repository, with `/` on every system.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-/// A word or a punctuation mark of a Rust file. Comments produce no tokens, and a quoted literal produces only one.
+/// A word or a punctuation mark.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) text: String,
     pub(crate) line: usize,
 }
 
-/// Returns the files below a folder of the repository with one of these extensions (`""` means none), sorted by path.
+/// Files with one of these extensions (`""` for none), sorted by path.
 pub(crate) fn files(folder: &str, extensions: &[&str]) -> Vec<Source> {
     let root = &lockstep2d_tests::root();
     let mut paths = Vec::new();
@@ -46,8 +45,8 @@ fn collect(folder: &Path, extensions: &[&str], paths: &mut Vec<PathBuf>) {
     }
 }
 
-/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token: its first quote.
-/// A raw string becomes one token that contains its text.
+/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes its first quote, and a raw
+/// string one token with its text. Comments produce no tokens.
 pub(crate) fn tokens(code: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let (mut rest, mut line) = (code, 1);
@@ -104,7 +103,7 @@ fn block_comment(rest: &str) -> usize {
     at
 }
 
-/// Returns the length up to and including the closing quote.
+/// Up to and including the closing quote.
 fn quoted(text: &str, quote: char) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices() {
@@ -116,7 +115,7 @@ fn quoted(text: &str, quote: char) -> usize {
     text.len()
 }
 
-/// Returns the length of a literal such as `'a'` or `'\n'`, or 1 for the quote of a lifetime.
+/// Length of a literal such as `'a'` or `'\n'`, or 1 for the quote of a lifetime.
 fn char_or_lifetime(rest: &str) -> usize {
     let mut chars = rest.chars().skip(1);
     match (chars.next(), chars.next()) {

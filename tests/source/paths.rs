@@ -1,28 +1,27 @@
-//! Paths between the modules of a crate, read from tokens, and the file that each path leads to.
+//! Paths between the modules of a crate, and the files that they lead to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::{Source, Token, tokens};
 
-/// A path in a source file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PathUse {
-    /// Names from the root of the crate, as in `["world", "cache", "Scratch"]`.
+    /// From the root of the crate, as in `["world", "cache", "Scratch"]`.
     pub(crate) path: Vec<String>,
     pub(crate) line: usize,
-    /// For `pub use`: the name under which the module re-exports it.
+    /// Name of a `pub use`.
     reexport: Option<String>,
-    /// For `pub use`: whether the module's own code uses the name as well.
+    /// Whether the module itself uses the name of a `pub use`.
     is_used_here: bool,
 }
 
-/// The modules of a crate and the paths in their files. Tests are left out: files and inline modules named `tests`.
+/// Without tests: files and inline modules named `tests`.
 pub(crate) struct Crate {
     modules: BTreeMap<Vec<String>, Vec<PathUse>>,
 }
 
 impl Crate {
-    /// Reads source files, each given by its module path and its text.
+    /// Reads files, each given by its module path and text.
     pub(crate) fn new(files: &[(Vec<String>, String)]) -> Self {
         let names: BTreeSet<Vec<String>> = files.iter().map(|(place, _)| place.clone()).collect();
         let read = |(place, text): &(Vec<String>, String)| {
@@ -33,21 +32,19 @@ impl Crate {
         Crate { modules: files.map(read).collect() }
     }
 
-    /// Returns the modules on whose files a module's own file depends, each with the line. A re-export is only a
-    /// dependency of its module if the module's own code uses the name, because a path through a re-export counts as a
-    /// path to the file that defines the item.
+    /// Modules on whose files a module's file depends, each with the line. A re-export only counts if the module itself
+    /// uses the name, because a path through it counts as one to the file that defines the item.
     pub(crate) fn dependencies(&self, place: &[String]) -> Vec<(Vec<String>, usize)> {
         let paths = self.modules[place].iter().filter(|path| path.reexport.is_none() || path.is_used_here);
         let resolved = paths.map(|path| (self.resolve(&path.path, 0), path.line));
         resolved.filter(|(used, _)| used != place && !used.is_empty()).collect()
     }
 
-    /// Returns all modules, in order.
     pub(crate) fn modules(&self) -> impl Iterator<Item = &Vec<String>> {
         self.modules.keys()
     }
 
-    /// Returns the module in whose file the item at a path is defined.
+    /// The module in whose file the item is defined.
     fn resolve(&self, path: &[String], depth: usize) -> Vec<String> {
         assert!(depth < 20, "{path:?} is re-exported in a circle");
         let mut place = Vec::new();
@@ -66,7 +63,7 @@ impl Crate {
         place
     }
 
-    /// Returns the groups of files that depend on each other in a circle: every group with more than one file.
+    /// Groups of files that depend on each other in a circle.
     pub(crate) fn circles(&self) -> Vec<BTreeSet<Vec<String>>> {
         let reached = |from: &Vec<String>| {
             let (mut seen, mut open) = (BTreeSet::new(), vec![from.clone()]);
@@ -90,24 +87,22 @@ impl Crate {
     }
 }
 
-/// Returns the module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`. Empty
-/// for the root.
+/// `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`, and empty for the root.
 pub(crate) fn module_of(path: &str) -> Vec<String> {
     let path = path.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
     parts.map(String::from).collect()
 }
 
-/// Returns the module paths and texts of source files.
 pub(crate) fn modules(files: &[Source]) -> Vec<(Vec<String>, String)> {
     files.iter().map(|file| (module_of(&file.path), file.text.clone())).collect()
 }
 
-/// Returns all paths in a file that start with `crate`, `super`, `self` or a child module.
+/// Paths that start with `crate`, `super`, `self` or a child module.
 fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>) -> bool) -> Vec<PathUse> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut found = Vec::new();
-    // For each open brace, the name of the inline module that it opens.
+    // Name of the inline module that each open brace opens.
     let mut braces: Vec<Option<String>> = Vec::new();
     // Names outside of paths and tests.
     let mut plain = BTreeSet::new();
@@ -160,8 +155,8 @@ fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Reads a path or a tree of paths. Adds the names of each path, and the name that the path brings into scope. Returns
-/// the index of the token after the path or the tree.
+/// Reads a path or a tree. Adds the names of each path, and the name that it brings into scope. Returns the index of
+/// the next token.
 fn read_tree(
     tokens: &[Token],
     start: usize,
@@ -206,7 +201,7 @@ fn read_tree(
     at
 }
 
-/// Converts a path to one from the root of the crate. `None` if the path leads to another crate.
+/// From the root of the crate. `None` for a path to another crate.
 fn absolute(
     names: &[String],
     module: &[String],

@@ -7,7 +7,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::JointDef;
 use lockstep2d::world::{BodyPose, Command, Config};
 
-/// Returns the handle of the first occupant of a slot, decoded from its canonical bytes.
+/// The first occupant of a slot.
 pub(super) fn identifier<H: serde::de::DeserializeOwned>(slot: u32) -> H {
     codec::decode(&u64::from(slot).to_le_bytes()).expect("a handle")
 }
@@ -45,12 +45,12 @@ pub(super) fn each(body: BodyDef, shape: ShapeDef, positions: impl Iterator<Item
     Command::SpawnEach { body, shapes: vec![shape], poses: positions.map(pose).collect() }
 }
 
-/// Returns places in a square of `side` times `side`, `gap` apart.
+/// Places in a square of `side` times `side`, `gap` apart.
 pub(super) fn grid(side: i64, gap: Fx) -> impl Iterator<Item = (Fx, Fx)> {
     (0..side * side).map(move |number| (gap * (number % side), gap * (number / side)))
 }
 
-/// Returns commands that create two bodies with `count` joints between them.
+/// Two bodies with `count` joints between them.
 pub(super) fn joined(count: usize, joint: JointDef) -> Vec<Command> {
     let ball = || spawn(BodyDef::dynamic(), vec![square(fx!(0.5))]);
     vec![ball(), ball(), Command::AddJointEach { joint, ends: vec![(body(0), body(1)); count] }]

@@ -1,4 +1,4 @@
-//! Measures how long the setup and the ticks of a game take for each work unit that they are charged.
+//! Time of the setup and of the ticks of a game per work unit.
 
 use std::time::{Duration, Instant};
 
@@ -6,13 +6,13 @@ use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
 use lockstep2d::world::{Command, Config};
 
-/// Largest number of nanoseconds per unit. Builds with debug assertions are allowed three times as many.
+/// Nanoseconds per unit. Builds with debug assertions are allowed three times as many.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
+/// In a shorter time, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Returns the processor time of this thread or, where the system does not report it, the time of the clock.
+/// Processor time of this thread or, where the system does not report it, time of the clock.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
@@ -20,16 +20,15 @@ pub(super) fn computed() -> Duration {
     nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
 }
 
-/// The commands of a tick, by its number.
+/// Commands of a tick, by its number.
 pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
-/// Largest number of repetitions of a pair of short commands that fits into a block of a file.
+/// Repetitions of a pair of short commands that fit into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
-/// Maximum number of times that the size of a case is doubled until a tick takes long enough to be judged.
+/// How often the size of a case is doubled until a tick takes long enough.
 const DOUBLED_MAX: u32 = 7;
 
-/// The work units and the time of a part of a game.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cost {
     units: u64,
@@ -46,7 +45,6 @@ pub(super) fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
     SandboxSetup { config, commands }
 }
 
-/// Records a replay of a case.
 fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
     for tick in 0..ticks {
@@ -55,7 +53,7 @@ fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     recording.finish().expect("a replay")
 }
 
-/// Returns limits that restrict only the total work.
+/// Only the total work is limited.
 fn limits(total_work: u64) -> Limits {
     Limits {
         tick_work: u64::MAX,
@@ -66,7 +64,7 @@ fn limits(total_work: u64) -> Limits {
     }
 }
 
-/// Returns the costs of the setup and of the tick with the highest cost per unit, each from the best of three runs.
+/// Costs of the setup and of the tick with the highest cost per unit, each the best of three runs.
 fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
@@ -95,11 +93,11 @@ fn costs(file: &[u8]) -> [Cost; 2] {
     best.expect("three runs")
 }
 
-/// A case of some size: its setup, its number of ticks and its commands.
+/// Setup, number of ticks and commands.
 pub(super) type Case<'a> = (SandboxSetup, u64, Script<'a>);
 
-/// Measures a case, prints its costs, and returns its name if it is too expensive. The size is doubled until a tick
-/// takes long enough to be judged. A case without such a tick is wrong, because it would show nothing.
+/// Returns the name of a case that is too expensive. The size is doubled until a tick takes long enough. A case without
+/// such a tick is wrong, because it would show nothing.
 pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Case<'a>) -> Option<String> {
     for doubled in 0..=DOUBLED_MAX {
         let size = size << doubled;
@@ -114,7 +112,7 @@ pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Cas
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
 }
 
-/// Measures a tick with commands that are repeated until they take most of its time.
+/// Repeats commands until they take most of the time of a tick.
 pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[Command]) -> Option<String> {
     let tick_of = |repeats: usize| {
         let script = |_| once.iter().cycle().take(repeats * once.len()).cloned().collect();
@@ -126,7 +124,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);
-        // A file cannot have enough cheap commands to take most of a tick: the tick with the most commands is judged.
+        // A file cannot have enough cheap commands: the tick with the most commands is judged.
         if parts[1].time >= least || (repeats == COMMANDS_MAX && parts[1].time >= JUDGED) {
             let name = format!("{name}, {repeats} times");
             return judge(&name, parts).or_else(|| stopped_late(&name, &file));
@@ -135,7 +133,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
 }
 
-/// Prints the costs of a case, and returns its name if it is too expensive.
+/// Returns the name of a case that is too expensive.
 fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     let mut wrong = None;
     for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
@@ -147,8 +145,8 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with fractions of the work that it needs as the limit. The setup alone may exceed such a limit.
-/// Returns the name of the case if the limit stops verification later than its units allow.
+/// Verifies a file with fractions of its work as the limit, which the setup alone may exceed. Returns the name of the
+/// case if verification stops later than the units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {
         let limits = limits(u64::MAX);

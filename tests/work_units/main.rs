@@ -1,11 +1,9 @@
-//! Work units bound the time: no tick and no setup takes more than a microsecond for each unit that it is charged
-//! (three in builds with debug assertions), whatever the commands do. Otherwise the limits of a verifier would not
-//! protect it.
+//! Work units bound the time: no tick and no setup takes more than a microsecond for each unit (three in builds with
+//! debug assertions). The limits of a verifier depend on it.
 //!
-//! Every case is recorded and then played by the verifier's player, which charges the units. It is also verified with a
-//! limit below the work that it needs: the limit must stop verification within the time of its units. Times are
-//! processor times of the thread where the system reports them, and the shortest of several runs, so that other load on
-//! the machine has little effect.
+//! Each case is recorded, and played by the verifier's player, which charges the units. A limit below the work of the
+//! case must stop verification within the time of its units. Times are processor times of the thread, where the system
+//! reports them, and the shortest of several runs, so that other load has little effect.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
 mod builders;
@@ -58,8 +56,8 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// Hinges at one body, with motors of very different strength that all slip: the block solver needs many rounds to find
-/// the motors that are at their limit.
+/// Hinges at one body, with motors of very different strength that all slip. The block solver needs many rounds to find
+/// those at their limit.
 #[test]
 fn motors_in_blocks() {
     let case = |count: i64| -> Case<'_> {
@@ -124,7 +122,7 @@ fn explosions_beside_many_shapes() {
         vec![Command::Explode { explosion: Explosion::new(Vec2::ZERO, fx!(0.001)) }; count]
     };
     let before = |count| -> Case<'_> { (setup(vec![add()], still()), 2, Box::new(move |_| explode(count))) };
-    // The second case adds the body in the tick of its explosions.
+    // The body is added in the tick of its explosions.
     let late = |count| -> Case<'_> {
         (setup(Vec::new(), still()), 1, Box::new(move |_| [vec![add()], explode(count)].concat()))
     };
@@ -182,8 +180,7 @@ fn every_command_of_a_body_asleep() {
     every_command_of_a_body(true);
 }
 
-/// Measures every command that names one body or shape, executed many times in a tick, on a body with many shapes,
-/// joints and neighbours.
+/// Every command that names one body or shape, many times in a tick, on a body with many shapes, joints and neighbours.
 fn every_command_of_a_body(settled: bool) {
     let many = body(0);
     let commands = || {
@@ -260,8 +257,8 @@ fn every_command_of_a_body(settled: bool) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The ticks of this file cost far more than the limits, which allow at most a tenth of a second. Verification must end
-/// within half a second, not after a whole tick.
+/// The ticks cost far more than the limits, which allow at most a tenth of a second. Verification must end within half
+/// a second, not after a whole tick.
 #[test]
 fn a_limit_ends_a_file_before_its_cost_is_paid() {
     let crowd = |count: i64, settings| {

@@ -1,7 +1,7 @@
-//! Sensors notice whatever crosses them within a tick, in the order of the crossings, at any speed.
+//! Sensors notice whatever crosses them within a tick, in the order of the crossings.
 //!
-//! The oracle moves a [`Probe`] with the visitor's shape along its path in a world in which the sensors stand still: it
-//! samples the overlap and then bisects the time at which it changes.
+//! The oracle moves a [`Probe`] with the visitor's shape along its path, while the sensors stand still. It samples the
+//! overlap, and bisects the times of its changes.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Chain, Geometry, MassSource, Polygon, ShapeDef, ShapeId};
 use lockstep2d::fx;
@@ -10,7 +10,7 @@ use lockstep2d::world::{Probe, QueryFilter, SensorEvent, World};
 
 use super::{run, shape_of, spawn, sweep, weightless};
 
-/// The path of a visitor: its position in metres at time 0, its velocity in m/s and its angular velocity in rad/s.
+/// Position in metres at time 0, velocity in m/s and angular velocity in rad/s.
 struct Path {
     start: Vec2<Fx>,
     velocity: Vec2<Fx>,
@@ -18,7 +18,7 @@ struct Path {
 }
 
 impl Path {
-    /// A probe of a geometry at a time in ticks.
+    /// `time` is in ticks.
     fn probe(&self, geometry: Geometry, time: Fx) -> Probe {
         let seconds = time / 60;
         let at = self.start + self.velocity.scale(seconds);
@@ -27,7 +27,7 @@ impl Path {
     }
 }
 
-/// A random shape of a sensor, about its centre.
+/// About its centre.
 fn gate(rng: &mut Rng) -> Geometry {
     let turned = |half: Fx, rng: &mut Rng| {
         Rot::from_angle(Angle::from_radians(rng.range(fx!(-0.5), fx!(0.5))))
@@ -64,7 +64,7 @@ fn visitor(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Returns the times in ticks at which a path enters and leaves a sensor that stands still in a world.
+/// Times in ticks at which a path enters and leaves a sensor that stands still.
 fn visits(world: &World, sensor: ShapeId, geometry: Geometry, path: &Path, end: Fx) -> Vec<(Fx, bool)> {
     let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
     let inside = |time: Fx| world.overlap_shape(&path.probe(geometry, time), filter).contains(&sensor);
@@ -97,7 +97,7 @@ fn a_thousand_crossings_are_noticed_in_order() {
     sweep::for_each(cases, check_course);
 }
 
-/// A visitor flies through three sensors, or the sensors fly over it.
+/// A visitor flies through three sensors, or they fly over it.
 fn check_course(case: u64) {
     let mut rng = Rng::new(case);
     let speed = rng.range(fx!(3), fx!(399));
@@ -124,7 +124,7 @@ fn check_course(case: u64) {
     }
     expected.sort_unstable();
 
-    // The sensors may be links and segments, which have no mass. Their bodies are fixed or kinematic.
+    // Links and segments have no mass, so that their bodies are fixed or kinematic.
     let (sensor_speed, kind) = match rng.below(3) {
         0 => (Fx::ZERO, BodyKind::Fixed),
         1 => (speed / 2, BodyKind::Kinematic),
@@ -170,7 +170,7 @@ fn check_course(case: u64) {
     }
 }
 
-/// A slanted wall deflects a ball into a direction in which the ball's enlarged AABB (fat box) does not reach.
+/// A slanted wall deflects a ball to where its enlarged AABB (fat box) does not reach.
 #[test]
 fn a_deflected_visitor_is_noticed_in_the_same_tick() {
     let mut rng = Rng::new(5);
@@ -180,12 +180,12 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
         let wall = super::rectangle(fx!(6), fx!(1)).restitution(fx!(1)).friction(fx!(0));
         let wall_def = BodyDef::fixed().position((fx!(2), fx!(-2))).angle(Angle::EIGHTH);
         spawn(&mut world, wall_def, wall);
-        // The surface of the wall passes near the origin at 45 degrees, so that the ball leaves upwards.
+        // The wall's surface passes near the origin at 45 degrees: the ball leaves upwards.
         let speed = rng.range(fx!(200), fx!(390));
         let start = Vec2::new(rng.range(fx!(-6), fx!(-2)), fx!(0));
         let def = BodyDef::dynamic().position(start).velocity((speed, fx!(0)));
         let flying = spawn(&mut world, def, super::ball(fx!(0.2)).restitution(fx!(1)).friction(fx!(0)));
-        // The sensor lies outside of the ball's fat box of the first tick, which is as long as the ball's flight.
+        // Outside of the fat box of the first tick, which is as long as the flight.
         let height = rng.range(fx!(1), fx!(3));
         let gate = super::rectangle(fx!(8), rng.range(fx!(0.01), fx!(0.5))).sensor();
         let gate = spawn(&mut world, BodyDef::fixed().position((fx!(-2), height)), gate);
@@ -196,7 +196,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
             run(&mut world, 1);
             let after = world.body(flying).expect("there").position();
             let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
-            // Naive oracle: tests for overlap at a thousand points of the path.
+            // Naive oracle: a thousand points of the path.
             let inside = |point: Vec2<Fx>| {
                 let probe = Probe::new(Geometry::circle(fx!(0.2)).expect("valid"), point).expect("valid");
                 world.overlap_shape(&probe, filter).contains(&gate)
@@ -246,8 +246,7 @@ fn sensors_notice_sensors_that_let_them() {
     assert_eq!(count(zone(), seeing()), [0, 1]);
     assert_eq!(count(seeing(), seeing()), [1, 1]);
     assert_eq!(count(seeing(), hidden), [0, 0]);
-    // A sensor without the switch for other sensors still reports solid visitors. On a solid shape this switch has no
-    // effect.
+    // A sensor without the switch still reports solid visitors. On a solid shape the switch has no effect.
     assert_eq!(count(zone(), super::square(fx!(1))), [1, 0]);
     assert_eq!(count(zone(), ShapeDef { sensor: false, ..seeing() }), [1, 0]);
 }
@@ -269,7 +268,7 @@ fn switching_the_detection_of_sensors_begins_and_ends_overlaps() {
     assert_eq!((world.events().sensor_begin.len(), world.events().sensor_end.len()), (0, 1));
 }
 
-/// Overlaps are listed as of the end of the tick: a visitor that has just left is not inside.
+/// A visitor that has just left is not inside.
 #[test]
 fn overlaps_are_those_of_the_end_of_the_tick() {
     let mut world = weightless();

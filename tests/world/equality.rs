@@ -1,5 +1,5 @@
-//! Neither the caches nor the choice of broad phase affect results: six worlds receive the same commands, and must have
-//! the same hash and events after every tick.
+//! Neither caches nor the broad phase affect results: six worlds receive equal commands, and must have equal hashes and
+//! events after every tick.
 
 use lockstep2d::body::ShapeId;
 use lockstep2d::collision::BroadPhaseKind;
@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use super::churn::Churn;
 use super::sweep;
 
-/// A treatment of a world between its ticks that must not affect results.
+/// Must not affect results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Variant {
     BruteForce,
@@ -19,7 +19,7 @@ enum Variant {
     Cleared,
     /// Encodes and decodes the world before every tick.
     Bytes,
-    /// Saves the world, simulates three ticks with other commands, and restores it.
+    /// Saves, simulates three ticks with other commands, and restores.
     RolledBack,
 }
 
@@ -64,7 +64,7 @@ impl Variant {
     }
 }
 
-/// Contacts and sensor overlaps that have begun and not ended.
+/// Begun and not ended.
 #[derive(Default)]
 struct Open {
     contacts: BTreeSet<ContactEvent>,
@@ -93,8 +93,7 @@ impl Open {
         }
     }
 
-    /// Expects that the shapes of every open contact and overlap exist, that the world lists the same overlaps, and
-    /// that the shapes of each overlap touch.
+    /// Shapes of open contacts and overlaps exist, the world lists the same overlaps, and their shapes touch.
     fn check(&self, world: &World) {
         let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
         let ends = ends.chain(self.visits.iter().flat_map(|event| [event.0, event.1]));
@@ -112,8 +111,7 @@ impl Open {
     }
 }
 
-/// Executes a command on the first world and expects that the invariants hold and that a refused command changes
-/// nothing.
+/// The invariants hold, and a refused command changes nothing.
 fn execute_checked(world: &mut World, command: &Command) {
     let before = world.state_hash();
     let refused = world.execute(command).is_err();
@@ -121,7 +119,7 @@ fn execute_checked(world: &mut World, command: &Command) {
     assert!(!refused || world.state_hash() == before, "{command:?} was refused, but changed the world");
 }
 
-/// Event counts, to prove that the test has covered them.
+/// Proves that events were covered.
 #[derive(Debug, Default)]
 struct Seen {
     slept: usize,
@@ -175,7 +173,7 @@ fn churn(seed: u64, ticks: u32, seen: &mut Seen) {
     }
 }
 
-/// Runs `churn` with each seed and returns the sum of the counts.
+/// Returns the sum of the counts.
 fn churn_each(seeds: Vec<u64>) -> Seen {
     let total = Mutex::new(Seen::default());
     sweep::for_each(seeds, |seed| {
@@ -186,7 +184,7 @@ fn churn_each(seeds: Vec<u64>) -> Seen {
     total.into_inner().expect("no check holds the lock")
 }
 
-/// Runs seeds 0 to 29, or a sample of them. The next test runs other seeds.
+/// Seeds 0 to 29, or a sample of them.
 #[test]
 fn nothing_that_is_done_to_the_caches_is_seen() {
     let seeds = sweep::sample(0..30, 4);
@@ -206,8 +204,8 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
     enough(hits, 400);
 }
 
-/// Runs a thousand other seeds, or those in the environment variable `SEEDS`: `SEEDS=1000..3000 cargo test --test world
-/// -- --ignored many`.
+/// A thousand other seeds, or those of the environment variable `SEEDS`: `SEEDS=1000..3000 cargo test --test world --
+/// --ignored many`.
 #[test]
 #[ignore = "takes minutes: .ci/long"]
 fn nothing_that_is_done_to_the_caches_is_seen_with_many_seeds() {

@@ -1,4 +1,4 @@
-//! Hit, contact and move events, in the documented order, and equal when a tick is simulated again.
+//! Hit, contact and move events, in the documented order.
 
 use lockstep2d::body::{Body, BodyDef, EventSwitches, ShapeDef};
 use lockstep2d::fx;
@@ -12,7 +12,6 @@ fn hitting(shape: ShapeDef) -> ShapeDef {
     shape.events(EventSwitches { hit: true, ..EventSwitches::default() })
 }
 
-/// Collects the hits of a number of ticks.
 fn hits(world: &mut World, ticks: u32) -> Vec<HitEvent> {
     let mut hits = Vec::new();
     for _ in 0..ticks {
@@ -35,8 +34,8 @@ fn a_hit_tells_where_how_fast_and_which_way() {
     assert_eq!((hit.shape_a, hit.shape_b), (shape_of(&world, left), shape_of(&world, right)));
     assert!((hit.approach_speed - fx!(9)).abs() < fx!(0.0001), "{}", hit.approach_speed);
     assert!(hit.normal.x > fx!(0.9999) && hit.normal.y.abs() < fx!(0.001), "{:?}", hit.normal);
-    // The balls close a gap of 3 m at 9 m/s. The left ball has then moved 2 m, so that they meet at x = 0.5 m, to
-    // within a tick of motion.
+    // The balls close a gap of 3 m at 9 m/s. Meanwhile the left one moves 2 m. They meet at x = 0.5 m, within a tick of
+    // motion.
     assert!((hit.point.x - fx!(0.5)).abs() < fx!(0.2) && hit.point.y.abs() < fx!(0.01), "{:?}", hit.point);
 }
 
@@ -56,8 +55,8 @@ fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     );
 }
 
-/// A ball that hits another body at speed v reports an impulse of (1 + e) v times the reduced mass, whatever its
-/// position when the tick begins. For a box that lands flat, the impulse is the sum over two contact points.
+/// A hit at the speed v has an impulse of (1 + e) v times the reduced mass, at any position when the tick begins. A box
+/// that lands flat has two contact points.
 #[test]
 fn a_hit_tells_the_impulse_of_the_whole_tick() {
     let wall = (BodyDef::fixed(), rectangle(fx!(50), fx!(0.5)), None);
@@ -131,7 +130,7 @@ fn contact_events_may_be_switched_off_and_on() {
     let (mut world, id, told) = landing(floor.events(silent), shape.events(silent));
     assert_eq!(told, 0);
 
-    // Switching events on reports the begin of an existing contact, and switching them off reports its end.
+    // Switching events on reports the begin of a contact, and switching them off its end.
     let id = shape_of(&world, id);
     world.set_shape(id, &shape).expect("valid");
     run(&mut world, 1);
@@ -187,7 +186,7 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
     }
 }
 
-/// Hit events do not affect the motion of bodies, and are the same with every backend.
+/// They do not affect motion, and are equal with every backend.
 #[test]
 fn hits_change_nothing_but_themselves() {
     let fall = |wanted: bool| {

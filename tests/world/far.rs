@@ -1,5 +1,4 @@
-//! Distant bodies change no bit of a simulation: a group of bodies moves equally by itself and with another group a
-//! kilometre away.
+//! Distant bodies change no bit: a group of bodies moves equally by itself and with another one a kilometre away.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +8,7 @@ use lockstep2d::world::World;
 
 use super::{sweep, world_with_floor};
 
-/// Adds random bodies about a place, some of them joined, on a floor of their own.
+/// Random bodies on a floor of their own, some of them joined.
 fn add_group(world: &mut World, rng: &mut Rng, place: Vec2<Fx>, count: u32) -> Vec<BodyId> {
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
     world.spawn(&BodyDef::fixed().position(place + Vec2::new(fx!(0), fx!(-1))), &[floor]).expect("valid");

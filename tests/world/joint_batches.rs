@@ -1,4 +1,4 @@
-//! Joint batches that are kept between ticks give the same results as batches that are prepared again every tick.
+//! Joint batches that are kept between ticks give results equal to those of new ones.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, MassSource};
 use lockstep2d::fx;
@@ -24,7 +24,7 @@ fn random_kind(rng: &mut Rng) -> JointKind {
     }
 }
 
-/// Creates a net of dynamic, kinematic and fixed bodies with joints of all kinds.
+/// Dynamic, kinematic and fixed bodies with joints of all kinds.
 fn net(rng: &mut Rng) -> World {
     let (mut world, floor) = world_with_floor();
     let mut bodies = vec![floor];
@@ -50,7 +50,7 @@ fn add_joint(world: &mut World, bodies: &[BodyId], rng: &mut Rng) {
     let anchor = body_a.transform().apply_inverse(body_b.position());
     let mut def = JointDef::new(a, b, random_kind(rng)).anchor_a(anchor);
     if body_a.kind() == BodyKind::Fixed && rng.chance(1, 2) {
-        // A is moved, so that the anchor is far from the origin of A.
+        // A is moved, so that the anchor is far from its origin.
         let offset = Vec2::new(fx!(1000), fx!(-300));
         let position = body_a.position() - offset;
         let angle = body_a.angle();
@@ -68,7 +68,7 @@ fn given(rng: &mut Rng) -> MassSource {
     MassSource::Given { mass: rng.range(fx!(1), fx!(9)), centre, gyration: rng.range(fx!(0.2), fx!(1)) }
 }
 
-/// Applies a random change that invalidates prepared joints, and adds a joint.
+/// Invalidates prepared joints by a random change, and adds a joint.
 fn change(world: &mut World, rng: &mut Rng) {
     let bodies: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
     let joints: Vec<_> = world.joints().map(|(id, joint)| (id, *joint.def())).collect();
@@ -103,7 +103,7 @@ fn joints_that_go_on_are_those_that_are_prepared_anew() {
         let mut anew = world.clone();
         let mut saved = world.save();
         for tick in 0..150 {
-            // Without a change, batches of the last tick are reused.
+            // Without a change, the batches of the last tick are used again.
             if rng.below(4) == 0 {
                 let mut same = rng.clone();
                 change(&mut world, &mut rng);

@@ -1,5 +1,4 @@
-//! Changes of joints between ticks: the kinds of their bodies, disabling, motors, springs and limits, softness of a
-//! joint; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the world.
+//! Changes of joints and of their bodies between ticks.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, JointId, MassSource, WorldError};
 use lockstep2d::fx;
@@ -36,7 +35,7 @@ fn kinds() -> [JointKind; 8] {
     ]
 }
 
-/// A pendulum on a fixed anchor. The fixed body is at the anchor or far away from it.
+/// On a fixed anchor. The fixed body is there or far away.
 fn pendulum(kind: JointKind, ground: (Vec2<Fx>, Angle), swapped: bool) -> (World, BodyId, JointId) {
     let anchor = Vec2::new(fx!(3000), fx!(-7));
     let mut world = World::default();
@@ -71,7 +70,7 @@ fn an_anchor_far_away_on_a_fixed_body_holds_like_a_near_one() {
                 (near.joint_force(joint).expect("there"), far.joint_force(far_joint).expect("there"));
             let within = fx!(0.02) + force.length() / 100;
             assert!((force - far_force).length() < within, "{kind:?}: {force:?} N, {far_force:?} N");
-            // The lever arm at A differs where the anchors are apart.
+            // Anchors that are apart have different lever arms at A.
             assert!((torque - far_torque).abs() < within, "{kind:?}: {torque} N m, {far_torque} N m");
         }
     }
@@ -91,7 +90,7 @@ fn a_joint_at_the_edge_of_the_world_holds() {
     assert!(at(&world, bob).distance(place) < fx!(0.001));
 }
 
-/// A platform on a hinge is made kinematic, fixed and kinematic in turn, and then dynamic again.
+/// The platform is kinematic, fixed, kinematic and dynamic in turn.
 #[test]
 fn a_joint_rests_while_neither_body_is_dynamic() {
     let mut world = World::default();
@@ -131,8 +130,8 @@ fn a_joint_may_be_added_between_bodies_that_become_dynamic_later() {
     assert!(at(&world, crate_).y > fx!(8.99), "the weld holds it");
 }
 
-/// Under gravity `a`, two anchors come apart by `a / (2 pi f)^2`, where `f` is the joint's own frequency instead of the
-/// world's. Solving in sub-steps adds no error at rest.
+/// Under gravity `a`, anchors come apart by `a / (2 pi f)^2` for the joint's own frequency `f`. Sub-steps add no error
+/// at rest.
 #[test]
 fn a_joint_yields_by_its_own_softness() {
     let limit: JointKind = Prismatic::new().limit(fx!(0), fx!(0)).into();
@@ -143,7 +142,7 @@ fn a_joint_yields_by_its_own_softness() {
         (Distance::rod(fx!(1)).into(), false),
         (Wheel::new().into(), false),
         (limit, false),
-        // A second joint, which a block solves together with the first.
+        // A second joint, solved in a block with the first.
         (hinge, true),
         (Weld::rigid().into(), true),
     ] {
@@ -177,8 +176,7 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// Joints of dynamic bodies whose own softness equals that of the world move bit for bit like joints without a softness
-/// of their own.
+/// Bit for bit, for joints of dynamic bodies.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {
@@ -204,7 +202,7 @@ fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     assert_eq!(without, net(2), "all joints");
 }
 
-/// A disabled joint pulls nothing, and its bodies collide and sleep as if it were absent.
+/// It pulls nothing, and its bodies collide and sleep.
 #[test]
 fn a_disabled_joint_is_as_if_absent() {
     let build = |joined: bool| {
@@ -258,7 +256,7 @@ fn a_joint_that_is_switched_off_and_on_keeps_its_handle() {
     assert_eq!(world.disable_joint(joint), Err(WorldError::StaleJoint(joint)));
 }
 
-/// A lift at the end of its way sleeps although the game sets motor, limit and target in every tick.
+/// The game sets motor, limit and target of a resting lift in every tick.
 #[test]
 fn a_setter_that_changes_nothing_wakes_nobody() {
     let (mut world, floor) = world_with_floor();
@@ -349,7 +347,7 @@ fn motor_limit_and_spring_are_told_apart() {
     }
 }
 
-/// Spring and motor of a joint bear the weight of a body together, and the motor at most its largest force.
+/// Spring and motor bear the weight together, the motor at most its largest force.
 #[test]
 fn the_springs_of_welds_and_motor_joints_are_told_apart() {
     let weld: JointKind = Weld::rigid().linear(fx!(4), fx!(1)).into();

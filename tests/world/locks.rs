@@ -1,4 +1,4 @@
-//! Locked axes and rotations: a locked degree of freedom stays at zero, and the remaining motion follows theory.
+//! Locked degrees of freedom stay at zero, and the other motion follows theory.
 
 use lockstep2d::body::{BodyDef, BodySettings, MotionLocks};
 use lockstep2d::fx;
@@ -10,7 +10,7 @@ fn close(a: Fx, b: Fx, tolerance: Fx) {
     assert!((a - b).abs() < tolerance, "{a} differs from {b}");
 }
 
-/// Without rotation, a ball that hits a box of equal mass off centre transfers all of its velocity along the normal.
+/// A ball hits a box of equal mass off centre, and gives it all of its velocity along the normal.
 #[test]
 fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     let mut world = weightless();
@@ -29,7 +29,7 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     close(b.velocity().y, fx!(0), fx!(0.001));
 }
 
-/// The box may rotate: the impulse is `2 v / (1 / m1 + 1 / m2 + d² / I)`, and the box turns.
+/// The impulse is `2 v / (1 / m1 + 1 / m2 + d² / I)`.
 #[test]
 fn a_box_that_turns_takes_less() {
     let mut world = weightless();
@@ -84,7 +84,7 @@ fn a_locked_axis_holds_whatever_pushes() {
     }
 }
 
-/// A ball bounces off a body with all axes locked as off a wall.
+/// All axes of the post are locked.
 #[test]
 fn a_ball_comes_back_from_a_locked_axis() {
     let mut world = weightless();

@@ -1,4 +1,4 @@
-//! Public behaviour of `World`: sleep, sensors, events, snapshots, and changes at run time. One file per subject.
+//! Public behaviour of `World`.
 
 mod churn;
 mod crossings;
@@ -40,7 +40,7 @@ fn capsule(half_length: Fx, radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::capsule(a, b, radius).expect("valid"))
 }
 
-/// A world with a fixed floor whose surface is at height 0.
+/// Its surface is at height 0.
 fn world_with_floor() -> (World, BodyId) {
     let mut world = World::default();
     let floor = BodyDef::fixed().position((fx!(0), fx!(-1)));
@@ -48,7 +48,6 @@ fn world_with_floor() -> (World, BodyId) {
     (world, floor)
 }
 
-/// A world without gravity.
 fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
@@ -65,7 +64,7 @@ fn is_asleep(world: &World, body: BodyId) -> bool {
     world.body(body).expect("there").is_asleep()
 }
 
-/// Steps, and validates the invariants after every tick.
+/// Validates the invariants after every tick.
 fn run(world: &mut World, ticks: u32) {
     for _ in 0..ticks {
         world.step();

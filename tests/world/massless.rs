@@ -1,4 +1,4 @@
-//! Dynamic bodies without mass: no shape, only lines, or density 0. They coast, and push as kinematic bodies do.
+//! Dynamic bodies without mass have no shape, only lines, or density 0. They coast, and push like kinematic ones.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -12,7 +12,7 @@ fn square(half: Fx) -> ShapeDef {
 
 fn run(world: &mut World, ticks: u32) {
     for _ in 0..ticks {
-        // A copy without caches continues in the same way.
+        // A copy without caches continues equally.
         let mut copy = World::from_bytes(&world.to_bytes()).expect("valid");
         world.step();
         copy.step();
@@ -66,7 +66,7 @@ fn damping_slows_a_body_without_mass_until_it_sleeps() {
 fn a_box_rests_on_a_platform_without_mass() {
     let mut world = World::default();
     let platform = world.spawn(&BodyDef::dynamic(), &[square(fx!(2)).density(fx!(0))]).expect("valid");
-    // A body without mass has no contact with fixed bodies, such as this wall.
+    // It has no contact with fixed bodies, such as this wall.
     let wall = BodyDef::fixed().position((fx!(3), fx!(0)));
     world.spawn(&wall, &[square(fx!(1.5))]).expect("valid");
     let load = BodyDef::dynamic().position((fx!(0), fx!(4)));
@@ -75,7 +75,6 @@ fn a_box_rests_on_a_platform_without_mass() {
     assert_eq!(world.body(platform).expect("there").position(), Vec2::ZERO);
     assert!((height(&world, load) - fx!(2.5)).abs() < fx!(0.002), "{}", height(&world, load));
     assert!(world.body(load).expect("there").is_asleep() && world.body(platform).expect("there").is_asleep());
-    // The platform lifts the box that lies on it.
     world.set_velocity(platform, Vec2::new(fx!(0), fx!(1)), fx!(0)).expect("dynamic");
     run(&mut world, 60);
     assert!((height(&world, platform) - fx!(1)).abs() < fx!(0.0001));
@@ -91,8 +90,7 @@ fn joints_hold_on_to_bodies_without_mass() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.3)).expect("valid"));
     let bob = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[ball]).expect("valid");
     world.add_joint(&JointDef::new(hook, bob, Revolute::new()).anchor_b((fx!(0), fx!(2)))).expect("valid");
-    // These joints connect bodies without mass and fixed bodies only, so they have no effect, even if their anchors
-    // are apart.
+    // Joints between bodies without mass and fixed ones have no effect, even if their anchors are apart.
     let idle = [
         JointDef::new(hook, other, Revolute::new()),
         JointDef::new(other, ground, Weld::rigid()),
@@ -123,7 +121,7 @@ fn a_body_gains_and_loses_its_mass_with_its_shapes() {
     assert_eq!(world.body(body).expect("there").velocity(), falling);
 }
 
-/// When a body loses or gains mass, its contacts and joints cease or begin to act, also while it sleeps.
+/// Contacts and joints cease or begin to act, also in sleep.
 #[test]
 fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     let mut world = World::default();
@@ -143,7 +141,7 @@ fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     world.set_shape(shape, &weightless).expect("valid");
     run(&mut world, 60);
     assert_eq!(contacts(&world), 0);
-    // The box sleeps while the hook is awake: a joint between two bodies without mass does not act.
+    // The box sleeps while the hook is awake: the joint does not act.
     world.set_velocity(hook, Vec2::new(fx!(0), fx!(1)), fx!(0)).expect("dynamic");
     run(&mut world, 60);
     assert!(world.body(body).expect("there").is_asleep() && !world.body(hook).expect("there").is_asleep());

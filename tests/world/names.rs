@@ -1,4 +1,4 @@
-//! Names of bodies, which reports show.
+//! Names of bodies.
 
 use lockstep2d::body::{BodyDef, Name, WorldError};
 use lockstep2d::codec;
@@ -52,7 +52,6 @@ fn names_are_in_snapshots_reports_and_differences() {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// A name does not change the simulation.
 #[test]
 fn a_named_body_moves_as_one_without_a_name() {
     let run_with = |name: Option<Name>| {
@@ -66,7 +65,7 @@ fn a_named_body_moves_as_one_without_a_name() {
     assert_eq!(run_with(None), run_with(Some(name("ball"))));
 }
 
-/// Untrusted bytes may decode to a name that cannot be made from a text. The world refuses such a name.
+/// Bytes may decode to a name that no text makes. The world refuses it.
 #[test]
 fn invalid_bytes_are_refused_as_a_name() {
     let mut world = World::default();

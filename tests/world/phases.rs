@@ -1,4 +1,4 @@
-//! Digests after each phase of a tick: equal for equal states, and without effect on the simulation.
+//! Digests after each phase of a tick do not affect the simulation.
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::world::{BodyField, World};

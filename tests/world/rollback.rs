@@ -1,4 +1,4 @@
-//! Snapshots: a restore brings back the saved state, whatever happened since and whatever the snapshots share.
+//! A restore brings back the saved state, whatever happened since and whatever snapshots share.
 
 use lockstep2d::codec;
 use lockstep2d::collision::BroadPhaseKind;
@@ -12,7 +12,7 @@ use super::sweep;
 use super::{ball, shape_of, spawn, square, weightless, world_with_floor};
 use lockstep2d::body::{BodyDef, Filter};
 
-/// Decodes a world from its bytes, so that its digest is computed without caches.
+/// Its digest is computed without caches.
 fn recomputed(world: &World) -> World {
     World::from_bytes(&world.to_bytes()).expect("its own bytes")
 }
@@ -24,7 +24,7 @@ fn assert_is(world: &World, saved: &(Snapshot, Vec<u8>), what: &str) {
     assert_eq!(world.validate(), Ok(()), "{what}");
 }
 
-/// The cached digest equals a recomputed one after every command and every step, refused commands included.
+/// Compares the kept digest with a new one after every command, refused ones included, and every step.
 #[test]
 fn what_is_known_of_a_world_follows_every_change() {
     sweep::for_each((100..108).collect(), |seed| {
@@ -44,8 +44,7 @@ fn what_is_known_of_a_world_follows_every_change() {
     });
 }
 
-/// Restores random snapshots, earlier and later, across bodies, shapes and joints that were created, destroyed and
-/// changed, and replays the following ticks from each with the same results.
+/// Restores earlier and later snapshots at random, and repeats the following ticks with equal results.
 #[test]
 fn a_world_jumps_between_its_snapshots() {
     sweep::for_each(sweep::sample(200..216, 3), |seed| {
@@ -77,7 +76,7 @@ fn a_world_jumps_between_its_snapshots() {
                 assert_is(&world, &saves[tick + 1], &format!("seed {seed}, {from} to {tick}"));
             }
         }
-        // Restores into a world with a different history.
+        // Into a world with another history.
         let mut other = world_with_floor().0;
         other.restore(&saves[70].0);
         assert_is(&other, &saves[70], "another world");
@@ -85,7 +84,7 @@ fn a_world_jumps_between_its_snapshots() {
     });
 }
 
-/// Shapes whose filters exclude each other are never searched for pairs. A filter change or a restore must bring the
+/// Shapes whose filters exclude each other are not searched for pairs. A change of filters or a restore brings the
 /// pairs back.
 #[test]
 fn crowds_that_leave_each_other_out_come_back_together() {
@@ -120,13 +119,12 @@ fn crowds_that_leave_each_other_out_come_back_together() {
             }
         }
     }
-    // A single shape with the default filter collides with its neighbours on both sides.
+    // One shape with the default filter collides with both of its neighbours.
     world.set_filter(ids[20], together).expect("there");
     world.step();
     assert_eq!(world.pair_count(), 2);
 }
 
-/// Saving into a used snapshot gives the same result as a new snapshot.
 #[test]
 fn a_reused_snapshot_is_as_good_as_new() {
     let mut churn = Churn::new(7);
@@ -149,8 +147,7 @@ fn a_reused_snapshot_is_as_good_as_new() {
     }
 }
 
-/// Snapshots of every scene are within a byte limit per body, pair and joint, and rolling back eight ticks gives the
-/// same hashes again.
+/// Limits the bytes per body, pair and joint. Eight ticks give equal hashes after a rollback.
 #[test]
 fn snapshots_of_every_scene_are_small_and_come_back() {
     sweep::for_each(lockstep2d_scenes::ALL.iter().collect(), |scene| {
@@ -190,8 +187,7 @@ fn snapshots_go_to_other_threads() {
     sent(&world);
 }
 
-/// Drawing a random number changes the hash of a world, and so does a change to a clone. A restore brings the saved
-/// hash back.
+/// A random number or a change to a clone changes the hash, and a restore brings it back.
 #[test]
 fn random_numbers_and_clones_are_hashed_as_they_are() {
     let (mut world, _) = world_with_floor();
@@ -208,7 +204,7 @@ fn random_numbers_and_clones_are_hashed_as_they_are() {
     assert_eq!((twin.state_hash(), world.state_hash()), (before, before));
 }
 
-/// Snapshots survive encoding and decoding, and damaged or truncated bytes are refused.
+/// Damaged and truncated bytes are refused.
 #[test]
 fn snapshots_come_back_from_their_bytes() {
     for name in ["ragdoll", "game", "box_stack"] {

@@ -7,10 +7,10 @@ use lockstep2d::world::{SensorEvent, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
 
-/// A sensor and its visitor.
+/// Sensor and visitor.
 type Visit = (ShapeId, ShapeId);
 
-/// Sensor events collected over several ticks.
+/// Events of several ticks.
 #[derive(Debug, Default, PartialEq)]
 struct Log {
     begun: Vec<Visit>,
@@ -79,7 +79,7 @@ fn a_moving_sensor_notices_all_kinds() {
     }
 }
 
-/// Returns a given mass, because a sensor would otherwise contribute mass according to its size.
+/// A sensor's own mass would depend on its size.
 fn mass() -> lockstep2d::body::MassSource {
     lockstep2d::body::MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) }
 }
@@ -129,7 +129,7 @@ fn kinematic_visitors_are_noticed_wherever_they_stop() {
     assert_eq!(Log::of(&mut world, 10).ended, [event], "a pair of fixed bodies has no sensor events");
 }
 
-/// Creates a box asleep on the floor inside a sensor.
+/// A box asleep on the floor inside a sensor.
 fn sleeper_inside() -> (World, BodyId, BodyId, Visit) {
     let (mut world, _) = world_with_floor();
     let sensor = spawn(&mut world, BodyDef::kinematic().position((fx!(0), fx!(1.3))), zone());

@@ -1,4 +1,4 @@
-//! Changes at run time: each setter has its documented effect, and a refused command changes nothing.
+//! Each setter has its documented effect, and a refused command changes nothing.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Material, ShapeDef, ShapeId, WorldError,
@@ -44,7 +44,7 @@ fn a_given_mass_keeps_place_and_motion() {
     let body = world.body(id).expect("there");
     assert_eq!((body.position(), body.mass()), (Vec2::new(fx!(3), fx!(4)), fx!(10)));
     close(body.angular_velocity(), fx!(2));
-    // The new centre of mass is 0.25 m above the old one, and gets the velocity of that point of the body.
+    // The new centre of mass is 0.25 m above the old one, and gets the velocity of that point.
     close(body.velocity().x, fx!(0.5));
     close(body.velocity_at(Vec2::new(fx!(3), fx!(4))).x, fx!(1));
     world.set_mass(id, MassSource::Shapes).expect("valid");
@@ -77,7 +77,7 @@ fn a_body_changes_its_kind_and_back() {
         world.body(id).expect("there").position().y < fx!(1),
         "expected the box to have fallen onto the floor"
     );
-    // Once the floor is dynamic, it falls together with the box on it.
+    // A dynamic floor falls together with the box on it.
     world.set_kind(floor, BodyKind::Dynamic).expect("valid");
     run(&mut world, 60);
     assert!(world.body(floor).expect("there").position().y < fx!(-4));
@@ -166,14 +166,14 @@ fn a_kinematic_body_goes_where_it_is_told_and_stops() {
     assert_eq!((body.position(), body.angle(), body.velocity()), (place, angle, Vec2::ZERO));
     run(&mut world, 5);
     assert_eq!(world.body(lift).expect("there").position(), place);
-    // Setting a velocity or a transform replaces the target of `move_to`.
+    // A velocity or a transform replaces the target of `move_to`.
     world.move_to(lift, Vec2::ZERO, Angle::ZERO).expect("valid");
     world.set_velocity(lift, Vec2::new(fx!(6), fx!(0)), fx!(0)).expect("valid");
     run(&mut world, 2);
     close(world.body(lift).expect("there").position().x, fx!(0.323));
 }
 
-/// A dynamic body that is pushed by a kinematic body with a target gets the velocity of the pusher.
+/// The pushed body gets the velocity of its pusher.
 #[test]
 fn a_kinematic_body_pushes_on_its_way() {
     let mut world = weightless();
@@ -188,7 +188,7 @@ fn a_kinematic_body_pushes_on_its_way() {
     assert!(body.position().x > fx!(1.97), "{}", body.position().x);
 }
 
-/// A world with a body of each kind, a joint and stale handles, in which commands are refused.
+/// A body of each kind, a joint and stale handles.
 struct Stage {
     world: World,
     floor: BodyId,
@@ -215,8 +215,8 @@ impl Stage {
         Stage { world, floor, lift, ball, gone, gone_shape }
     }
 
-    /// Expects a command to be refused while the ball is awake and while it sleeps, without any effect on the state or
-    /// on the following tick.
+    /// The command is refused while the ball is awake and while it sleeps, without effect on the state or the next
+    /// tick.
     fn refuses(&mut self, command: &Command, matches: fn(&WorldError) -> bool) {
         for _ in 0..2 {
             let mut unasked = self.world.clone();

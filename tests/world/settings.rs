@@ -1,4 +1,4 @@
-//! Settings of a world that change at run time.
+//! Settings that change at run time.
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, World};
 
 use super::{ball, is_asleep, run, spawn, square, world_with_floor};
 
-/// A stack of boxes on the floor, at rest.
+/// At rest on the floor.
 fn stack(sub_steps: u32) -> (World, Vec<BodyId>) {
     let (mut world, _) = world_with_floor();
     set(&mut world, |config| config.solver.sub_steps = sub_steps);
@@ -29,7 +29,7 @@ fn set(world: &mut World, change: impl Fn(&mut Config)) {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// The impulses of a warm start are converted to the new length of sub-steps: a shorter sub-step has smaller impulses.
+/// Impulses of a warm start are converted to the new length of sub-steps.
 #[test]
 fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
     for (from, to, tick_rate) in [(4, 8, 60), (4, 16, 60), (8, 4, 60), (16, 4, 60), (4, 4, 120), (4, 8, 30)] {
@@ -48,8 +48,8 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // Boxes hardly move, because contacts have the same frequency before and after the change, as long as
-                // 30 Hz are at most an eighth of the sub-step rate.
+                // Contacts have an equal frequency before and after the change, while 30 Hz are at most an eighth of
+                // the sub-step rate.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }
@@ -103,8 +103,7 @@ fn a_world_continues_as_one_that_was_made_with_the_settings() {
     }
 }
 
-/// While two shapes touch, their combined material, including the restitution threshold, is cached. A new threshold in
-/// the settings must still apply.
+/// The combined material of touching shapes is cached, including the threshold.
 #[test]
 fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
     let rebounds = |changed: bool| {
@@ -115,7 +114,7 @@ fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
         if changed {
             set(&mut world, |config| config.solver.restitution_threshold = fx!(0.1));
         }
-        // The ball, which touches the floor, hits it within this tick.
+        // The ball touches the floor, and hits it within this tick.
         world.set_velocity(resting, Vec2::new(fx!(0), fx!(-0.7)), fx!(0)).expect("valid");
         run(&mut world, 1);
         world.body(resting).expect("there").velocity().y
@@ -174,7 +173,6 @@ fn a_lower_speed_limit_slows_down() {
     assert!((speed - fx!(20)).abs() < fx!(0.001), "{speed}");
 }
 
-/// A restore brings back the settings of the saved world.
 #[test]
 fn settings_are_part_of_a_snapshot() {
     let (mut world, _) = stack(4);

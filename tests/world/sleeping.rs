@@ -1,4 +1,4 @@
-//! Sleeping: bodies at rest fall asleep, are not simulated, and wake whenever something affects them.
+//! Bodies at rest fall asleep, are not simulated, and wake when something affects them.
 
 use lockstep2d::body::{BodyDef, BodyId, BodySettings, Filter, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, Section, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, world_with_floor};
 
-/// Creates a stack of three boxes asleep on a floor, the lowest first.
+/// Three boxes asleep on a floor, the lowest first.
 fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     let (mut world, floor) = world_with_floor();
     let boxes = [fx!(0.5), fx!(1.5), fx!(2.5)]
@@ -18,7 +18,7 @@ fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     (world, floor, boxes)
 }
 
-/// Applies a change to a sleeping stack, and expects all of its boxes to be awake after one tick.
+/// All boxes of a sleeping stack are awake a tick after a change.
 fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     let (mut world, floor, boxes) = sleeping_stack();
     change(&mut world, floor, boxes);
@@ -30,7 +30,7 @@ fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     world
 }
 
-/// Expects that ticks change nothing but the tick counter, and simulate no bodies.
+/// Ticks change nothing but their counter, and simulate no bodies.
 fn assert_still(world: &mut World, ticks: u32) {
     let before = world.digest();
     let places: Vec<_> = world.bodies().map(|(_, body)| (body.position(), body.angle())).collect();
@@ -146,7 +146,7 @@ fn a_support_that_goes_wakes_what_rests_on_it() {
         let def = world.shape(id).expect("there").def().sensor();
         world.set_shape(id, &def).expect("valid");
     }));
-    // The remaining boxes wake when the lowest one is despawned.
+    // The other boxes wake when the lowest one is despawned.
     wakes(|world, _, [lowest, ..]| world.despawn(lowest).expect("there"));
 }
 
@@ -171,7 +171,7 @@ fn a_body_that_passes_by_wakes_nothing() {
     assert!(boxes.iter().all(|id| is_asleep(&world, *id)));
 }
 
-/// Creates a box asleep on a kinematic platform.
+/// A box asleep on a kinematic platform.
 fn sleeper_on_platform() -> (World, BodyId, BodyId) {
     let mut world = World::default();
     let platform = spawn(&mut world, BodyDef::kinematic(), rectangle(fx!(3), fx!(0.5)));
@@ -185,7 +185,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // This speed is below the default sleep speed of 0.05 m/s.
+        // Below the default sleep speed of 0.05 m/s.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
@@ -205,7 +205,7 @@ fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     }
 }
 
-/// A pendulum at rest under a kinematic or fixed anchor wakes when the anchor moves or is disabled.
+/// The anchor of a resting pendulum moves or is disabled.
 #[test]
 fn what_hangs_from_a_body_wakes_when_it_moves() {
     let hung = |anchor: BodyDef| {
@@ -309,7 +309,7 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Each domino sleeps in its own island, and all of them wake in the tick in which the first one is set in motion.
+/// Each domino sleeps in an island of its own.
 #[test]
 fn a_row_of_sleepers_wakes_in_one_tick() {
     let mut world = super::weightless();
@@ -322,9 +322,9 @@ fn a_row_of_sleepers_wakes_in_one_tick() {
     assert_eq!(world.stats().bodies, 500);
 }
 
-/// Removes the support of a box that has been at rest for long, while another body keeps their island awake. At 240 Hz
-/// the box is still slower than its sleep speed after the first tick of its fall. If its count of ticks at rest were
-/// not reset, the box would fall asleep in the air.
+/// The support of a resting box is removed, while another body keeps their island awake. At 240 Hz the box is slower
+/// than its sleep speed after the first tick of its fall. If its ticks at rest were not counted anew, it would fall
+/// asleep in the air.
 #[test]
 fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     type Edit = fn(&mut World, BodyId) -> Result<(), WorldError>;
@@ -360,8 +360,8 @@ fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     }
 }
 
-/// The player keeps the seesaw down, and is in motion in every tick. When the player jumps off, the seesaw begins to
-/// turn more slowly than its sleep speed.
+/// The player keeps the seesaw down, and is in motion in every tick. After the jump, the seesaw begins to turn more
+/// slowly than its sleep speed.
 #[test]
 fn a_seesaw_turns_back_when_the_player_leaves() {
     let mut world = World::default();

@@ -1,9 +1,8 @@
 //! Access to the memory of callers. No other module dereferences their pointers.
 //!
-//! Functions of the API take [`In`] and [`Out`] instead of raw pointers. A value of these types is either made from a
-//! Rust reference, or passed by a foreign caller, who guarantees what `lockstep2d.h` requires: the pointer is null, or
-//! it points to as many items as the function reads or writes, and nothing else accesses them during the call.
-//! Everything else is checked: null pointers, alignment, and counts.
+//! An [`In`] or [`Out`] comes from a Rust reference or from a foreign caller. A foreign caller guarantees that the
+//! pointer is null or points to as many items as the function reads or writes, and that nothing else accesses them
+//! during the call. Null pointers, alignment and counts are checked.
 
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -51,7 +50,6 @@ fn check<T>(pointer: *const T) -> Outcome {
     Ok(())
 }
 
-/// Checks that a slice with this number of items can exist.
 fn check_count<T>(count: usize) -> Outcome {
     let bytes = count.checked_mul(size_of::<T>()).and_then(|bytes| isize::try_from(bytes).ok());
     bytes.map(|_| ()).ok_or_else(|| Failure::new(Status::Value, "a count exceeds the memory"))
@@ -76,7 +74,6 @@ impl<'a, T: Plain> In<'a, T> {
         In(std::ptr::null(), PhantomData)
     }
 
-    /// Wraps a raw pointer, for tests and fuzzing.
     #[cfg(any(test, feature = "fuzzing"))]
     pub(crate) const fn to(pointer: *const T) -> Self {
         In(pointer, PhantomData)
@@ -86,11 +83,9 @@ impl<'a, T: Plain> In<'a, T> {
         self.0.is_null()
     }
 
-    /// Copies the value.
     pub(crate) fn get(&self) -> Outcome<T> {
         check(self.0)?;
-        // SAFETY: not null and aligned; the caller promises that it points to an item, and every byte pattern is an
-        // item.
+        // SAFETY: not null and aligned; the caller promises an item, and every byte pattern is an item.
         Ok(unsafe { self.0.read() })
     }
 
@@ -101,14 +96,13 @@ impl<'a, T: Plain> In<'a, T> {
         }
         check(self.0)?;
         check_count::<T>(count)?;
-        // SAFETY: not null, aligned, and of a possible size; the caller promises that it points to `count` items that
-        // nothing changes during the call, and every byte pattern is an item.
+        // SAFETY: not null, aligned, and of a possible size; the caller promises `count` items that do not change
+        // during the call, and every byte pattern is an item.
         Ok(unsafe { std::slice::from_raw_parts(self.0, count) })
     }
 }
 
 impl In<'_, u8> {
-    /// Returns `bytes` bytes as UTF-8 text.
     pub(crate) fn text(&self, bytes: usize) -> Outcome<&str> {
         std::str::from_utf8(self.slice(bytes)?)
             .map_err(|error| Failure::new(Status::Text, format!("not UTF-8: {error}")))
@@ -134,7 +128,6 @@ impl<'a, T: Plain> Out<'a, T> {
         Out(std::ptr::null_mut(), PhantomData)
     }
 
-    /// Wraps a raw pointer, for tests and fuzzing.
     #[cfg(any(test, feature = "fuzzing"))]
     pub(crate) const fn to(pointer: *mut T) -> Self {
         Out(pointer, PhantomData)
@@ -144,12 +137,11 @@ impl<'a, T: Plain> Out<'a, T> {
         self.0.is_null()
     }
 
-    /// Checks the pointer before an operation whose result would otherwise be lost.
+    /// Checks the pointer, before an operation whose result would be lost.
     pub(crate) fn check(&self) -> Outcome {
         check(self.0)
     }
 
-    /// Writes the value.
     pub(crate) fn set(&mut self, value: T) -> Outcome {
         check(self.0)?;
         // SAFETY: not null and aligned; the caller promises that it points to memory for an item.
@@ -162,7 +154,7 @@ impl<'a, T: Plain> Out<'a, T> {
         if self.0.is_null() { Ok(()) } else { self.set(value) }
     }
 
-    /// Writes the number of items to `count`, and the items if there are at most `capacity`. Otherwise the result is
+    /// Writes the number of items to `count`, and the items if there are at most `capacity`, otherwise
     /// [`Status::Buffer`].
     pub(crate) fn set_all(&mut self, capacity: usize, count: &mut Out<'_, usize>, items: &[T]) -> Outcome {
         count.set(items.len())?;
@@ -177,8 +169,8 @@ impl<'a, T: Plain> Out<'a, T> {
             return Ok(());
         }
         check(self.0)?;
-        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, which are at least as many as
-        // are written, and that it is not memory of this library.
+        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, not of this library, and at
+        // most `capacity` are written.
         unsafe { std::ptr::copy_nonoverlapping(items.as_ptr(), self.0, items.len()) };
         Ok(())
     }
@@ -186,7 +178,7 @@ impl<'a, T: Plain> Out<'a, T> {
 
 /// Runs the body of a function, and converts failures and panics to status codes.
 pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
-    // Objects are behind mutexes. A panic poisons the mutexes of the objects that it leaves in an unknown state.
+    // A panic poisons the mutexes of the objects that it leaves in an unknown state.
     let result = catch_unwind(AssertUnwindSafe(body));
     let status = match result {
         Ok(Ok(())) => Status::Ok,

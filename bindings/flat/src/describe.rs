@@ -1,74 +1,57 @@
-//! Description of the API as data, from which the header and the layouts for other languages are written.
+//! Description of the API, from which the header and the layouts for other languages are written.
 
-/// A constant of the API.
+/// A constant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Constant {
-    /// Name in C.
     pub(crate) name: &'static str,
-    /// Value.
     pub(crate) value: i64,
-    /// Lines of documentation.
     pub(crate) docs: &'static [&'static str],
 }
 
 /// An alias of an integer type.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Alias {
-    /// Name in C.
     pub(crate) name: &'static str,
-    /// Integer type in C.
     pub(crate) of: &'static str,
-    /// Lines of documentation.
     pub(crate) docs: &'static [&'static str],
 }
 
 /// A field of a struct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
-    /// Name.
     pub(crate) name: &'static str,
-    /// Type of the field, or of its items.
+    /// Type of the field, or of its items if it is an array.
     pub(crate) kind: &'static str,
-    /// Number of items, if it is an array.
+    /// Number of items of an array.
     pub(crate) count: Option<usize>,
-    /// Offset in bytes.
     pub(crate) offset: usize,
-    /// Lines of documentation.
     pub(crate) docs: &'static [&'static str],
 }
 
 /// A struct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Struct {
-    /// Name in C.
     pub(crate) name: &'static str,
-    /// Size in bytes.
     pub(crate) bytes: usize,
-    /// Its fields in order, without gaps.
+    /// Without gaps.
     pub(crate) fields: &'static [Field],
-    /// Lines of documentation.
     pub(crate) docs: &'static [&'static str],
 }
 
 /// A parameter of a function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parameter {
-    /// Name.
     pub(crate) name: &'static str,
-    /// Type, in parts that are written before and after its name in C: `const `, `ls2d_vec2`, ` *`.
+    /// Parts before, of and after the type in C: `const `, `ls2d_vec2`, ` *`.
     pub(crate) kind: [&'static str; 3],
 }
 
 /// A function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Function {
-    /// Name in C.
     pub(crate) name: &'static str,
-    /// Its parameters.
     pub(crate) parameters: &'static [Parameter],
-    /// Type of the result.
     pub(crate) returns: &'static str,
-    /// Lines of documentation.
     pub(crate) docs: &'static [&'static str],
 }
 
@@ -76,7 +59,7 @@ pub(crate) struct Function {
 pub(crate) trait CType {
     /// Type of the value, or of the items that it points to.
     const BASE: &'static str;
-    /// Text before and after the type in C.
+    /// Text before and after the type.
     const AROUND: [&'static str; 2] = ["", ""];
     /// Number of items of an array.
     const COUNT: Option<usize> = None;
@@ -114,12 +97,11 @@ impl<T: CType, const N: usize> CType for [T; N] {
     const COUNT: Option<usize> = Some(N);
 }
 
-/// Description of a parameter of type `T`.
 pub(crate) const fn parameter<T: CType>(name: &'static str) -> Parameter {
     Parameter { name, kind: [T::AROUND[0], T::BASE, T::AROUND[1]] }
 }
 
-/// Defines aliases of integers as Rust types, so that they cannot be mixed up, and their descriptions.
+/// Defines aliases of integers as distinct Rust types, and their descriptions.
 macro_rules! aliases {
     ($($(#[doc = $doc:literal])+ $name:ident($of:ty) = $c:literal;)+) => {
         $(
@@ -136,7 +118,6 @@ macro_rules! aliases {
             }
         )+
 
-        /// All aliases of this module.
         pub(crate) const ALIASES: &[$crate::describe::Alias] = &[$($crate::describe::Alias {
             name: $c,
             of: <$of as $crate::describe::CType>::BASE,
@@ -145,7 +126,6 @@ macro_rules! aliases {
     };
 }
 
-/// Defines constants and their descriptions.
 macro_rules! constants {
     ($($(#[doc = $doc:literal])+ $name:ident = $value:literal, $c:literal;)+) => {
         $(
@@ -153,14 +133,12 @@ macro_rules! constants {
             pub const $name: u32 = $value;
         )+
 
-        /// All constants of this module.
         pub(crate) const CONSTANTS: &[$crate::describe::Constant] =
             &[$($crate::describe::Constant { name: $c, value: $value, docs: &[$($doc),+] }),+];
     };
 }
 
-/// Defines structs that C and Rust share, and their descriptions. A struct with gaps between its fields, whose bytes
-/// would be undefined, does not compile.
+/// Defines structs that C and Rust share, and their descriptions. A struct with gaps does not compile.
 macro_rules! records {
     ($($(#[doc = $doc:literal])+ struct $name:ident = $c:literal {
         $($(#[doc = $field_doc:literal])+ $field:ident: $type:ty,)+
@@ -183,7 +161,6 @@ macro_rules! records {
             }
         )+
 
-        /// All structs of this module.
         pub(crate) const STRUCTS: &[$crate::describe::Struct] = &[$($crate::describe::Struct {
             name: $c,
             bytes: size_of::<$name>(),
@@ -199,13 +176,12 @@ macro_rules! records {
     };
 }
 
-/// Defines functions of the API. The body of a function without a result type returns `Outcome`, and the function
-/// returns a status code. The body of any other function returns its value.
+/// Defines functions. A body without a result type returns `Outcome`, and its function a status code. Other bodies
+/// return the function's value.
 macro_rules! api {
     ($($(#[doc = $doc:literal])+ fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $value:ty)? $body:block)+) => {
         $($crate::describe::api!(@define [$($doc)+] $name [$($argument: $type),*] [$($value)?] $body);)+
 
-        /// All functions of this module.
         pub(crate) const FUNCTIONS: &[$crate::describe::Function] = &[$($crate::describe::Function {
             name: stringify!($name),
             parameters: &[$($crate::describe::parameter::<$type>(stringify!($argument))),*],
@@ -213,7 +189,7 @@ macro_rules! api {
             docs: &[$($doc),+],
         }),+];
 
-        /// Calls of all functions of this module with arguments drawn from bytes.
+        /// Calls with arguments drawn from bytes.
         #[cfg(any(test, feature = "fuzzing"))]
         pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
             $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*

@@ -1,24 +1,22 @@
-//! Calls functions of the API with arguments that are drawn from bytes and often wrong, for tests and for the fuzz
-//! target `flat`. The list of all functions comes from the `api!` macro.
+//! Calls all functions with arguments drawn from bytes, often wrong ones.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
 use crate::numbers::{RawAngle, RawBody, RawFx, RawHash, RawJoint, RawShape};
 use crate::status::Status;
 
-/// A call of a function with drawn arguments.
 pub(crate) type DrawnCall = fn(&mut Caller<'_>);
 
-/// Number of items in a buffer, and largest count that is passed with it.
+/// Number of items in a buffer.
 const ITEMS: usize = 64;
-/// Number of items in a buffer of bytes, and largest count that is passed with it.
+/// Number of bytes in a buffer of bytes.
 const BYTES: usize = 4096;
 
-/// Number of objects, and of ids, that a caller remembers. It forgets the oldest first.
+/// Number of objects and of ids that a caller remembers.
 const REMEMBERED: usize = 12;
 
-/// Names of parameters that are handles of objects. A handle that an output parameter returns is mostly passed to
-/// parameters of the same name; `copy` is the handle of a world, and the outputs `rules` and `name` are those of bytes.
+/// Parameters that are handles. Outputs are mostly passed to parameters of the same name. `copy` is a world, and the
+/// outputs `rules` and `name` are bytes.
 const HANDLES: [&str; 11] = [
     "world",
     "target",
@@ -33,23 +31,22 @@ const HANDLES: [&str; 11] = [
     "copy",
 ];
 
-/// Memory that a call reads and writes, aligned for all types.
 #[derive(Debug)]
 struct Buffer {
     item: usize,
-    /// Name of the parameter, if it is a handle.
+    /// The kind of object, if the parameter is a handle.
     handle: Option<&'static str>,
     is_output: bool,
     words: Box<[u64]>,
 }
 
-/// A caller, with the handles, ids and structs that earlier calls have returned.
+/// A caller with the results of its earlier calls.
 #[derive(Debug)]
 pub struct Caller<'a> {
     input: std::slice::Iter<'a, u8>,
     handles: Vec<(&'static str, u32)>,
     ids: Vec<u64>,
-    /// The last output for each item size, such as a definition made by an `_init` function, or a packet.
+    /// The last output for each item size.
     known: Vec<(usize, Box<[u64]>)>,
     buffers: Vec<Buffer>,
     /// Number of items in the buffer of the last pointer argument.
@@ -57,8 +54,8 @@ pub struct Caller<'a> {
     codes: Vec<i32>,
 }
 
-/// Calls functions as long as there is input. Returns their codes, and the lower halves of the hashes of the worlds at
-/// the end. Frees the objects whose handles the functions wrote to output parameters for handles (`family`).
+/// Calls functions as long as there is input. Returns their codes, and the lower halves of the worlds' hashes at the
+/// end.
 ///
 /// # Panics
 /// If a call has failed in the library itself.
@@ -85,7 +82,7 @@ fn hash(world: u32) -> Option<u64> {
     (crate::ls2d_world_hash(world, Out::of(&mut hash)) == 0).then_some(hash.low)
 }
 
-/// The name under which the handles of a parameter are remembered; `None` if the parameter is no handle.
+/// The kind of object of a parameter; `None` if it is no handle.
 fn family(name: &str) -> Option<&'static str> {
     let name = match name {
         "copy" => "world",
@@ -96,7 +93,6 @@ fn family(name: &str) -> Option<&'static str> {
 }
 
 impl Caller<'_> {
-    /// Makes the first world and list of commands, and returns their handles.
     fn begin(&mut self) -> Vec<u32> {
         let [mut world, mut commands] = [0; 2];
         let _ = crate::ls2d_world_new(In::null(), Out::of(&mut world));
@@ -127,7 +123,7 @@ impl Caller<'_> {
         known.get(index % known.len().max(1)).copied().unwrap_or(0)
     }
 
-    /// Draws a number with 32 fraction bits: a few metres, or any value.
+    /// A number with 32 fraction bits: a few metres, or any value.
     fn number(&mut self) -> u64 {
         match self.byte() {
             0 => self.word(),
@@ -143,9 +139,8 @@ impl Caller<'_> {
         known.unwrap_or_else(|| self.word())
     }
 
-    /// Draws memory for items of `item` bytes, filled with zeros or with the last output for items of this size. Up to
-    /// three words of an input are changed. Returns the address and an offset in bytes, which is 1 for a misaligned
-    /// pointer; `None` for a null pointer.
+    /// Draws memory for items of `item` bytes, with zeros or an earlier output. Up to three words of an input are
+    /// changed. Returns the address, and 1 for a misaligned pointer; `None` for a null pointer.
     fn buffer(&mut self, name: &str, item: usize, is_output: bool) -> Option<(*mut u64, usize)> {
         self.items = if item == 1 { BYTES } else { ITEMS };
         let kind = self.byte();
@@ -156,7 +151,7 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // Changes only words of about the first two items, which most calls read.
+                // Most calls read about the first two items.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;
@@ -195,9 +190,7 @@ impl Caller<'_> {
     }
 }
 
-/// A type of arguments that can be drawn from bytes.
 pub(crate) trait Drawn {
-    /// Draws an argument for the parameter `name`.
     fn draw(caller: &mut Caller<'_>, name: &'static str) -> Self;
 }
 
@@ -208,7 +201,7 @@ impl Drawn for u32 {
             return caller.handle(name);
         }
         match byte {
-            // Few ticks, because every tick takes time.
+            // Every tick takes time.
             _ if name == "ticks" => u32::from(byte % 8),
             0..16 => u32::try_from(caller.word() >> 32).unwrap_or(0),
             _ => u32::from(byte % 16),
@@ -257,12 +250,11 @@ impl<T: Plain> Drawn for Out<'_, T> {
     }
 }
 
-/// A type of results of API functions.
 pub(crate) trait Returned {
     /// The status code; `None` for a function that returns a value.
     fn code(self) -> Option<i32>;
 
-    /// Records the status code of a call, and panics if it is an error in the library.
+    /// Records a status code.
     fn check(self, caller: &mut Caller<'_>, name: &str)
     where
         Self: Sized,

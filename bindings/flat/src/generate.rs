@@ -60,7 +60,7 @@ const CLOSING: &str = "
 fn comment(text: &mut String, indent: &str, docs: &[&str]) {
     let lines: Vec<_> = docs.iter().map(|line| line.trim()).collect();
     let between = format!("\n{indent} * ");
-    // Writing to a string does not fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{indent}/* {} */", lines.join(&between));
 }
 
@@ -135,8 +135,7 @@ pub fn header() -> String {
     text
 }
 
-/// A JavaScript module with constants, and with the size and the fields of every struct: offset, type, and number of
-/// items if it is an array.
+/// The text of `layout.js`: constants, and size and fields of every struct.
 #[must_use]
 pub fn layout() -> String {
     let mut text = String::from(

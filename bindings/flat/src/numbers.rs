@@ -9,12 +9,12 @@ use crate::describe::{aliases, records};
 use crate::status::{Failure, Outcome, Status};
 
 aliases! {
-    /// A number of metres, seconds, kilograms and so on, in units of 2^-32: 1 is 4294967296.
+    /// A number in units of 2^-32: 1 is 4294967296.
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
-    /// slot. Less than 2^53, so that a JavaScript number represents it exactly; only `LS2D_NO_ID` is larger.
+    /// A body of a world. The lowest 21 bits are its slot, the others count earlier bodies in that slot. Less than
+    /// 2^53, so that a JavaScript number is exact, except for `LS2D_NO_ID`.
     RawBody(u64) = "ls2d_body";
     /// A shape of a world, encoded like a body.
     RawShape(u64) = "ls2d_shape";
@@ -48,9 +48,9 @@ records! {
     }
 }
 
-/// Value of a handle that refers to no body, shape or joint.
+/// A handle that refers to nothing.
 pub(crate) const NO_ID: u64 = u64::MAX;
-/// Number of bits of a handle that hold the slot.
+/// Bits of a handle for the slot.
 const SLOT_BITS: u32 = 21;
 
 impl RawFx {
@@ -92,7 +92,7 @@ impl RawVec2 {
         RawVec2 { x: RawFx::of_unit(value.x), y: RawFx::of_unit(value.y) }
     }
 
-    /// Returns the components, clamped to the range -2 to 2.
+    /// The components, clamped to the range -2 to 2.
     pub(crate) fn units(self) -> Vec2<Unit> {
         Vec2::new(narrow(self.x.fx()), narrow(self.y.fx()))
     }
@@ -115,7 +115,7 @@ fn pack(index: u32, generation: u32) -> u64 {
     u64::from(generation) << SLOT_BITS | u64::from(index)
 }
 
-/// The canonical bytes of a handle: slot and generation.
+/// The canonical bytes of a handle.
 fn unpack(packed: u64) -> Option<[u8; 8]> {
     let index = u32::try_from(packed & ((1 << SLOT_BITS) - 1)).ok()?;
     let generation = u32::try_from(packed >> SLOT_BITS).ok()?;
@@ -129,7 +129,7 @@ fn unpack(packed: u64) -> Option<[u8; 8]> {
 macro_rules! identifiers {
     ($($raw:ident, $id:ident, $status:ident, $what:literal;)+) => {
         $(impl $raw {
-            /// Returns the handle. A number that is not a handle is reported as a stale one.
+            /// A number that is no handle is reported as stale.
             pub(crate) fn id(self) -> Outcome<$id> {
                 let stale = || Failure::new(Status::$status, concat!($what, " does not exist"));
                 let bytes = unpack(self.0).ok_or_else(stale)?;

@@ -9,17 +9,16 @@ use lockstep2d::replay::RecordError;
 use lockstep2d::session::{ConfigError, InputSize};
 use lockstep2d::world::SnapshotError;
 
-/// Defines the codes, their C names and their texts in one list.
+/// Defines codes, C names and texts.
 macro_rules! statuses {
     ($($(#[doc = $doc:literal])+ $name:ident = $code:literal, $constant:literal;)+) => {
-        /// Result of a function. Codes never change their meaning; new ones may be added.
+        /// Result of a function.
         #[repr(i32)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Status {
             $($(#[doc = $doc])+ $name = $code,)+
         }
 
-        /// Code, name of the C constant, and documentation of each status.
         pub(crate) const STATUSES: &[(i32, &str, &[&str])] = &[$(($code, $constant, &[$($doc),+]),)+];
     };
 }
@@ -27,7 +26,7 @@ macro_rules! statuses {
 statuses! {
     /// The function has succeeded.
     Ok = 0, "LS2D_OK";
-    /// There is nothing to return: no hit, no packet, no event, no further item. Not an error.
+    /// There is nothing to return, which is not an error.
     None = 1, "LS2D_NONE";
     /// A pointer that must not be null is null.
     Null = 2, "LS2D_NULL";
@@ -39,17 +38,17 @@ statuses! {
     HandleKind = 5, "LS2D_HANDLE_KIND";
     /// The `size` of a struct does not match this version of the library.
     Size = 6, "LS2D_SIZE";
-    /// An argument is out of its range, for example a kind, flag, count or tick; or the call is not possible now.
+    /// An argument is out of its range, or the call is not possible at this time.
     Value = 7, "LS2D_VALUE";
-    /// The buffer is too short. If the function has a pointer for the number of items, the number needed was written.
+    /// The buffer is too short. The number of items needed was written, if the function writes it.
     Buffer = 8, "LS2D_BUFFER";
-    /// A text is invalid, for example not UTF-8 or not a number.
+    /// A text is invalid, for example not UTF-8.
     Text = 9, "LS2D_TEXT";
     /// A result has no value: division by zero, root of a negative number.
     Number = 10, "LS2D_NUMBER";
-    /// An error in the library itself. The objects that the call used are unusable afterwards.
+    /// An error in the library. The objects of the call are unusable.
     Internal = 11, "LS2D_INTERNAL";
-    /// An earlier `LS2D_INTERNAL` has left the object unusable. It can only be freed.
+    /// `LS2D_INTERNAL` has left the object unusable. It can be freed.
     Broken = 12, "LS2D_BROKEN";
     /// There are too many objects.
     Exhausted = 13, "LS2D_EXHAUSTED";
@@ -89,7 +88,7 @@ statuses! {
     JointBodies = 35, "LS2D_JOINT_BODIES";
     /// The joint has no such part.
     JointPart = 36, "LS2D_JOINT_PART";
-    /// A property of a joint is out of range, or its lower limit is above the upper one.
+    /// A property of a joint is out of range, or its limits are reversed.
     Joint = 37, "LS2D_JOINT";
     /// A setting of the world or a property of an explosion is out of range.
     Setting = 38, "LS2D_SETTING";
@@ -97,7 +96,7 @@ statuses! {
     FixedSetting = 39, "LS2D_FIXED_SETTING";
     /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
     Name = 40, "LS2D_NAME";
-    /// The largest number of bodies, shapes or joints of the world, or of shapes of a body, would be exceeded.
+    /// The world would have too many bodies, shapes or joints, or a body too many shapes.
     Full = 41, "LS2D_FULL";
     /// The kind of the body does not allow the change.
     WrongKind = 42, "LS2D_WRONG_KIND";
@@ -113,14 +112,12 @@ statuses! {
     NotInMatch = 62, "LS2D_NOT_IN_MATCH";
 }
 
-/// Reason why a function has failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) status: Status,
     pub(crate) text: String,
 }
 
-/// Result of the body of a function.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
@@ -132,13 +129,11 @@ impl Failure {
         Failure { status, text: error.to_string() }
     }
 
-    /// Returns the failure for `LS2D_NONE`: there is nothing to return.
     pub(crate) fn none() -> Self {
         Failure::new(Status::None, "there is nothing to return")
     }
 }
 
-/// A failure for a value out of its range.
 pub(crate) fn value(what: &str, given: impl Display) -> Failure {
     Failure::new(Status::Value, format!("{what} cannot be {given}"))
 }
@@ -178,7 +173,6 @@ impl From<WorldError> for Failure {
     }
 }
 
-/// Failures whose status depends on the type of the error alone.
 macro_rules! failure_from {
     ($($error:ty => $status:ident;)+) => {
         $(impl From<$error> for Failure {
@@ -202,14 +196,13 @@ thread_local! {
     static LAST: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Stores the text of a failure for `ls2d_last_error`, and returns the status.
+/// Stores a failure for `ls2d_last_error`.
 pub(crate) fn note(failure: Failure) -> Status {
     let Failure { status, text } = failure;
     LAST.with_borrow_mut(|last| *last = text);
     status
 }
 
-/// Text of the last failure or verdict on this thread.
 pub(crate) fn last_text() -> String {
     LAST.with_borrow(String::clone)
 }

@@ -1,7 +1,7 @@
-//! Table of objects. Handles are looked up in it, so that a wrong handle is an error and not a crash.
+//! Table of objects.
 //!
-//! A handle consists of a slot and a generation, which counts the objects that the slot has held. A slot whose
-//! generations are used up is not used again, so that a stale handle never refers to another object.
+//! A handle consists of a slot and a generation, which counts the objects of the slot. A slot without generations left
+//! is not reused, so that a stale handle never refers to another object.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -11,15 +11,13 @@ use lockstep2d::world::{Command, Snapshot, World};
 use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder, SandboxTimeline};
 use crate::status::{Failure, Outcome, Status};
 
-/// Bits of a handle for the slot. The other bits are the generation, which starts at 1, so that no handle is 0.
+/// Bits of a handle for the slot. The generation starts at 1, so that no handle is 0.
 const SLOT_BITS: u32 = 20;
 const SLOTS_MAX: usize = 1 << SLOT_BITS;
 const GENERATION_MAX: u32 = (1 << (32 - SLOT_BITS)) - 1;
 
-/// Defines the kinds of objects.
 macro_rules! kinds {
     ($($(#[$condition:meta])* $variant:ident($type:ty), $name:literal;)+) => {
-        /// An object that a handle refers to.
         pub(crate) enum Object {
             $($(#[$condition])* $variant(Box<$type>),)+
         }
@@ -49,7 +47,6 @@ macro_rules! kinds {
     };
 }
 
-/// A type of object.
 pub(crate) trait Kind: Sized {
     const NAME: &'static str;
 
@@ -57,10 +54,9 @@ pub(crate) trait Kind: Sized {
     fn wrap(self) -> Object;
 }
 
-/// Bytes as an object, such as an encoded world.
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 
-/// List of edits, to be executed later.
+/// Edits, to be executed later.
 pub(crate) struct Commands(pub(crate) Vec<Command>);
 
 kinds! {
@@ -94,7 +90,7 @@ struct Table {
 
 static TABLE: Mutex<Table> = Mutex::new(Table { slots: Vec::new(), free: Vec::new() });
 
-/// The table. No code that may panic runs while it is locked.
+/// Code that runs while the table is locked must not panic.
 fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -103,13 +99,11 @@ fn unknown(handle: u32) -> Failure {
     Failure::new(Status::Handle, format!("no object has the handle {handle}"))
 }
 
-/// Slot and generation of a handle.
 fn parts(handle: u32) -> (usize, u32) {
     let slot = handle & ((1 << SLOT_BITS) - 1);
     (usize::try_from(slot).unwrap_or(usize::MAX), handle >> SLOT_BITS)
 }
 
-/// Adds an object and returns its handle.
 pub(crate) fn add<T: Kind>(value: T) -> Outcome<u32> {
     let object = Arc::new(Mutex::new(value.wrap()));
     let mut table = table();
@@ -146,14 +140,13 @@ fn find<T: Kind>(object: &mut Object) -> Outcome<&mut T> {
     })
 }
 
-/// Calls `body` with an object. Calls with the same object on several threads wait for each other.
+/// Calls `body` with an object.
 pub(crate) fn with<T: Kind, R>(handle: u32, body: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
     let object = get(handle)?;
     let mut object = lock(&object)?;
     body(find(&mut object)?)
 }
 
-/// Calls `body` with two objects of different kinds.
 pub(crate) fn with_two<A: Kind, B: Kind, R>(
     a: u32,
     b: u32,
@@ -166,7 +159,7 @@ pub(crate) fn with_two<A: Kind, B: Kind, R>(
             "two objects are expected, and both handles are the same",
         ));
     }
-    // Locks are always taken in the same order, so that two threads cannot wait for each other.
+    // The order of the locks prevents deadlocks.
     let (mut first, mut second);
     let (lock_a, lock_b) = if a < b {
         first = lock(&object_a)?;
@@ -180,14 +173,12 @@ pub(crate) fn with_two<A: Kind, B: Kind, R>(
     body(find(lock_a)?, find(lock_b)?)
 }
 
-/// Calls `body` with an object of any kind.
 pub(crate) fn with_any<R>(handle: u32, body: impl FnOnce(&mut Object) -> Outcome<R>) -> Outcome<R> {
     let object = get(handle)?;
     let mut object = lock(&object)?;
     body(&mut object)
 }
 
-/// Takes an object out of the table. Its handle is stale afterwards.
 fn remove(handle: u32) -> Outcome<Shared> {
     let (index, generation) = parts(handle);
     let mut table = table();
@@ -200,13 +191,12 @@ fn remove(handle: u32) -> Outcome<Shared> {
     Ok(object)
 }
 
-/// Removes an object from the table. If a call on another thread uses the object, its memory is freed after that call.
+/// A call that uses the object on another thread frees its memory.
 pub(crate) fn free(handle: u32) -> Outcome {
-    // The object is dropped after the table is unlocked.
+    // Dropped after the table is unlocked.
     remove(handle).map(drop)
 }
 
-/// Number of objects.
 pub(crate) fn count() -> usize {
     table().slots.iter().filter(|slot| slot.object.is_some()).count()
 }

@@ -1,4 +1,4 @@
-//! The committed header and layout match the API. With `LOCKSTEP2D_WRITE=1` the tests write them.
+//! The committed header and layout match the API. `LOCKSTEP2D_WRITE=1` writes them.
 
 use std::path::Path;
 
@@ -25,7 +25,6 @@ fn the_layout_is_that_of_the_api() {
     check("../npm/src/layout.js", &lockstep2d_flat::layout());
 }
 
-/// The header contains functions of several modules.
 #[test]
 fn every_function_is_in_the_header() {
     let header = lockstep2d_flat::header();

@@ -1,4 +1,4 @@
-// The scenes in each engine: `build` returns `step`, which simulates 1/60 s, and `hash` if the engine has one.
+// Scenes in each engine: `build` returns `step`, which simulates 1/60 s, and `hash` if the engine has one.
 import { SCENES, STATIC } from "./scenes.mjs";
 
 const number = Number;
@@ -78,14 +78,14 @@ async function planck() {
 
 async function matter() {
     const { default: M } = await import("matter-js");
-    // Matter's units are pixels, and its y axis points down.
+    // Units are pixels, and the y axis points down.
     const SCALE = 50;
     const place = ([x, y]) => [SCALE * number(x), -SCALE * number(y)];
     const shapes = {
         box: (at, { half: [x, y] }) => M.Bodies.rectangle(...at, 2 * SCALE * number(x), 2 * SCALE * number(y)),
         ball: (at, { radius }) => M.Bodies.circle(...at, SCALE * number(radius)),
         polygon: (at, { points }) => M.Bodies.fromVertices(...at, [points.map((point) => pair(place(point)))]),
-        // Matter has no capsules; a rectangle with rounded corners is the nearest shape.
+        // Matter has no capsules.
         capsule: (at, { half, radius }) => M.Bodies.rectangle(...at, 2 * SCALE * number(radius), 2 * SCALE * (number(half) + number(radius)),
             { chamfer: { radius: SCALE * number(radius) * 0.99 } }),
     };
@@ -112,7 +112,7 @@ export const ENGINES = {
     "matter-js": matter,
 };
 
-/** Milliseconds of each tick of all scenes, and the hash of the last state if the engine has one. */
+/** Milliseconds of each tick, and the hash of the last state. */
 export async function measure(make, ticks) {
     const build = await make();
     const play = (scene, count) => {
@@ -124,7 +124,7 @@ export async function measure(make, ticks) {
         });
         return { times, hash: hash?.() };
     };
-    // Warm-up: JavaScript engines optimise a function only after many calls.
+    // Warm-up: functions are optimised after many calls.
     Object.values(SCENES).forEach((scene) => play(scene, 60));
     return Object.entries(SCENES).map(([name, scene]) => ({ name, ...play(scene, ticks) }));
 }

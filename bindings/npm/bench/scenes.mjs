@@ -1,7 +1,5 @@
-// Scenes that are measured: heaps of one shape between walls, and ragdolls. Numbers are decimal text. The engines that
-// compute with floats convert them.
+// Heaps of one shape between walls, and ragdolls. Numbers are decimal text.
 
-/** Positions of a heap: rows that are shifted against each other. */
 function* heap(count) {
     for (let index = 0; index < count; index++) {
         const row = Math.floor(index / 12);

@@ -3,10 +3,9 @@
 //     npm ci && node steps.mjs             this package, rapier2d, planck, matter-js
 //     node steps.mjs A.wasm B.wasm ...     builds of the module
 //
-// In each round, every engine or build runs in a new process. All rounds simulate the same ticks, so the time of a tick
-// is its shortest time over the rounds: load on the machine only makes ticks longer. Figures are means over the ticks,
-// and in brackets their ratio to the first column. ROUNDS is 5 by default. Hashes, if an engine has them, have to be
-// equal.
+// In each round, every engine or build runs in a new process. The time of a tick is its shortest one over the rounds,
+// because load on the machine makes ticks longer. Figures are means over the ticks, with their ratio to the first
+// column. ROUNDS is 5 by default. Hashes have to be equal.
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 import { ENGINES, measure, moduleOf } from "./engines.mjs";

@@ -1,4 +1,4 @@
-// Characters: shapes that a game moves by its own rules instead of forces.
+// Characters.
 import { byteArray, fail, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
@@ -41,8 +41,6 @@ function readPlane(at) {
     return plane;
 }
 
-/** Moves a character for one tick at its velocity, among the shapes that the filter accepts. Returns its new state, and
- * the surfaces that the character has met. The game adds gravity to the velocity; the world does not change. */
 export function moveCharacter(world, mover, state, filter = {}) {
     const [abilities, pose, plane] = [sizeOf("mover"), sizeOf("mover_state"), sizeOf("mover_plane")];
     const before = abilities + 2 * pose + sizeOf("query_filter");
@@ -62,14 +60,13 @@ export function moveCharacter(world, mover, state, filter = {}) {
     return { state: readState(to), met: Array.from({ length: count }, (_, index) => readPlane(at + index * plane)) };
 }
 
-/** The state of a character as bytes, for saves and hashes. */
 export function encodeMoverState(state) {
     const at = scratch(sizeOf("mover_state"));
     writeState(at, state);
     return copy(at, sizeOf("mover_state"));
 }
 
-/** The state of a character from bytes. `moveCharacter` checks it. */
+/** `moveCharacter` checks the state. */
 export function decodeMoverState(bytes) {
     if (byteArray(bytes, "the argument").length !== sizeOf("mover_state")) {
         throw new Lockstep2dError("DECODE", `the state of a character has ${sizeOf("mover_state")} bytes, and not ${bytes.length}`);

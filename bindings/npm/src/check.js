@@ -1,4 +1,4 @@
-// Checks of arguments. A wrong argument is an error with the code VALUE that names the argument.
+// Checks of arguments, which name the argument in an error with the code VALUE.
 import { Lockstep2dError } from "./error.js";
 
 const U32_MAX = 0xffffffff;
@@ -21,7 +21,6 @@ export function shown(value) {
     }
 }
 
-/** Checks an integer from `min` to `max`, which is a number or a bigint, and returns it. */
 export function integer(value, what, min, max) {
     if ((typeof value !== "bigint" && !Number.isSafeInteger(value)) || value < min || value > max) {
         fail(`${what} is an integer from ${min} to ${max}, and not ${shown(value)}`);
@@ -29,10 +28,8 @@ export function integer(value, what, min, max) {
     return value;
 }
 
-/** Checks an integer of 32 bits without sign, and returns it as a number. */
 export const count = (value, what) => Number(integer(value, what, 0, U32_MAX));
 
-/** Checks an integer of 64 bits without sign, and returns it as a bigint. */
 export const long = (value, what) => BigInt(integer(value, what, 0, 0xffffffffffffffffn));
 
 export function object(value, what) {
@@ -54,18 +51,15 @@ export function string(value, what) {
     return typeof value === "string" ? value : fail(`${what} is a text, and not ${shown(value)}`);
 }
 
-/** Checks a value that is a boolean or undefined, and returns it. */
 export function flag(value, what) {
     return value === undefined || typeof value === "boolean" ? value : fail(`${what} is true or false, and not ${shown(value)}`);
 }
 
-/** Checks an instance of a class, and returns it. */
 export function instance(value, type, what) {
     return value instanceof type ? value : fail(`${what} is a ${type.name}, and not ${shown(value)}`);
 }
 
-/** Checks the names of options, and returns the options. A misspelt option is an error, because it would otherwise be
- * ignored. */
+/** A misspelt option is an error, because it would be ignored. */
 export function onlyKnown(options, known, what) {
     const unknown = Object.keys(object(options, what)).find((key) => !known.includes(key));
     if (unknown !== undefined) {

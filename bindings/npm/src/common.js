@@ -10,7 +10,5 @@ export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, 
 
 import { library } from "./library.js";
 
-/** Version of the engine's arithmetic: programs with different versions compute different states. */
 export const semantics = () => library().ls2d_semantics();
-/** Number of objects that neither `dispose` nor the garbage collector has freed. */
 export const objectCount = () => library().ls2d_object_count();

@@ -1,4 +1,4 @@
-// lockstep2d/core: without replays and matches, for smaller pages.
+// lockstep2d/core: without replays and matches.
 export * from "./common.js";
 
 import { initializer } from "./library.js";

@@ -1,4 +1,4 @@
-// Definitions of shapes, bodies, joints and worlds as objects, and their structs.
+// Definitions of shapes, bodies, joints and worlds, and their structs.
 import { array, fail, flag, object, onlyKnown, shown } from "./check.js";
 import { Fx, rawOf, vectorOf } from "./fx.js";
 import { C } from "./layout.js";
@@ -14,7 +14,7 @@ const MIXING = {
     maximum: C.MIX_MAXIMUM,
 };
 const FALLOFFS = { constant: C.FALLOFF_CONSTANT, inverse: C.FALLOFF_INVERSE, inverseSquare: C.FALLOFF_INVERSE_SQUARE };
-// Each type of joint with the options that only some types have.
+// Types of joints, with the options that only some types have.
 const JOINTS = {
     revolute: [C.REVOLUTE, "limit", "motor", "spring"],
     prismatic: [C.PRISMATIC, "limit", "motor", "spring"],
@@ -37,7 +37,7 @@ function lookup(table, name, what) {
 
 const optionalLookup = (table, name, what) => (name === undefined ? undefined : lookup(table, name, what));
 
-/** Bits of the options of a struct that are true, and of those that are false. */
+/** Bits of the options that are true, and of those that are false. */
 function bitsOfFlags(options, bits) {
     let [set, cleared] = [0, 0];
     for (const [name, bit] of Object.entries(bits)) {
@@ -56,22 +56,15 @@ function flags(at, name, bits, cleared = 0) {
 const shape = (kind, geometry, options = {}) => ({ kind, geometry, options: onlyKnown(options, SHAPE_OPTIONS, "a shape") });
 const points = (given) => array(given, "points");
 
-/** A disc with a radius in metres. */
 export const circle = (radius, options) => shape(C.CIRCLE, { radius }, options);
-/** A rectangle with half its width and height in metres. */
 export const box = (halfWidth, halfHeight, options) => {
     const half = [rawOf(halfWidth, "half the width of a box"), rawOf(halfHeight, "half the height of a box")];
     return shape(C.RECTANGLE, { points: [half.map((raw) => new Fx(raw))] }, options);
 };
-/** A convex polygon of 3 to 8 points, counter-clockwise. */
 export const polygon = (corners, options) => shape(C.POLYGON, { points: points(corners), count: corners.length }, options);
-/** The convex hull of 3 to 8 points in any order. */
 export const hull = (corners, options) => shape(C.HULL, { points: points(corners), count: corners.length }, options);
-/** A capsule: all points within a radius of a line. */
 export const capsule = (a, b, radius, options) => shape(C.CAPSULE, { points: [a, b], radius }, options);
-/** A line without area. */
 export const segment = (a, b, options) => shape(C.SEGMENT, { points: [a, b] }, options);
-/** A smooth outline of up to 4096 lines, for ground and walls. */
 export const chain = (corners, { closed = false, oneSided = false, ...options } = {}) => {
     flag(closed, "closed");
     flag(oneSided, "oneSided");
@@ -110,7 +103,6 @@ function writeArea(at, area) {
     }
 }
 
-/** Checks a shape that `circle` and so on have made, and returns it. */
 function shapeOf(value) {
     if (value === null || typeof value !== "object" || !("options" in value)) {
         fail(`a shape is made by circle, box, polygon, hull, capsule, segment or chain, and is not ${shown(value)}`);
@@ -118,7 +110,6 @@ function shapeOf(value) {
     return value;
 }
 
-/** Writes one shape. */
 export function writeShape(at, value) {
     const { kind, geometry, options } = shapeOf(value);
     if (kind === undefined) {
@@ -143,7 +134,7 @@ export function writeShape(at, value) {
     flags(at, "shape_def", set, cleared & ~set);
 }
 
-/** Replaces the chains among the shapes of a body by their links, as bytes. */
+/** Replaces the chains of a body by their links, as bytes. */
 export function expand(shapes) {
     return array(shapes, "shapes").flatMap((each) => (shapeOf(each).closed === undefined ? [each] : chainLinks(each)));
 }
@@ -179,7 +170,6 @@ export const BODY_FLAGS = {
     lockRotation: C.BODY_LOCK_ROTATION,
 };
 
-/** Writes a body definition. */
 export function writeBody(at, options) {
     onlyKnown(options, BODY_OPTIONS, "a body");
     call("ls2d_body_def_init", lookup(BODY_KINDS, options.type ?? "dynamic", "the type of a body"), at);
@@ -203,8 +193,8 @@ function writeMass(at, options) {
     write("body_def", at, { mass, massCentre: centre, massGyration: gyration });
 }
 
-/** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address `rest` of
- * `room` bytes after them. */
+/** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address of `room`
+ * bytes after them. */
 export function writeBodyAndShapes(options, room = 0) {
     const shapes = expand(onlyKnown(options, BODY_OPTIONS, "a body").shapes ?? []);
     const [body, each] = [sizeOf("body_def"), sizeOf("shape_def")];
@@ -222,7 +212,6 @@ export function writeBodyAndShapes(options, room = 0) {
     return { id: at, body: at + 8, shapes: after, count: shapes.length, rest: after + each * shapes.length };
 }
 
-/** Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for the option `mass`. */
 export function massOf(shapes) {
     const { rest, shapes: at, count } = writeBodyAndShapes({ shapes }, 32);
     call("ls2d_shapes_mass", at, count, rest, rest + 8, rest + 24);
@@ -235,7 +224,6 @@ const JOINT_OPTIONS = [
     "type", "a", "b", "anchorA", "anchorB", "angleA", "angleB", "softness", "collide", "enabled", "threshold", "userData",
 ];
 
-// Options of the parts of joints.
 const JOINT_PARTS = {
     motor: ["speed", "max"], spring: ["hertz", "dampingRatio", "target"], softness: ["hertz", "dampingRatio"],
     threshold: ["force", "torque", "breaks"], linearMotor: ["velocity", "max"], linearSpring: ["hertz", "dampingRatio", "max"],
@@ -259,7 +247,6 @@ function checkJoint(options, known) {
     }
 }
 
-/** Writes a joint definition. */
 export function writeJoint(at, options) {
     const [kind, ...known] = lookup(JOINTS, object(options, "a joint").type, "the type of a joint");
     checkJoint(options, known);
@@ -293,7 +280,6 @@ export function writeJoint(at, options) {
     flags(at, "joint_def", set, options.enabled === false ? C.JOINT_ENABLED : 0);
 }
 
-/** Writes the given settings of a world, and keeps all others. */
 export function writeConfig(at, options) {
     const known = [...optionsOf("config", ["size", "flags"]), "sleeping", "continuous"];
     const { sleeping: _, continuous: __, ...plain } = onlyKnown(options, known, "a world");
@@ -303,7 +289,6 @@ export function writeConfig(at, options) {
 
 const OVERLAPS = { resist: C.OVERLAP_RESIST, report: C.OVERLAP_REPORT, ignore: C.OVERLAP_IGNORE };
 
-/** Writes a filter of a query. */
 export function writeFilter(at, filter) {
     onlyKnown(filter, ["category", "mask", "sensors", "except", "initialOverlap"], "a filter");
     const { category, mask, sensors, except = [], initialOverlap } = filter;

@@ -4,14 +4,12 @@ import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from 
 import { bitsOf, rawOf, vectorOf } from "./fx.js";
 import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
 
-// Options of bodies that `setBody` can change.
 const SETTINGS = ["linearDamping", "angularDamping", "gravityScale", "sleepSpeed", "maySleep", "continuous", "lockX", "lockY",
     "lockRotation"];
 const raws = (vector, what) => vectorOf(vector, what);
 
-/** Edits, which a world executes at once and a list of commands collects. */
 export class Edits extends Handle {
-    /** Adds a body with its shapes, and returns its handle; a list of commands returns undefined. */
+    /** A list of commands returns undefined. */
     spawn(options) {
         const { id: at, body, shapes, count } = writeBodyAndShapes(options);
         putRaw(at, -1n);
@@ -19,8 +17,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a body with the same definition at each pose `{ position, angle }`, or no body if one of them is refused.
-     * Returns their handles; a list of commands returns undefined. */
+    /** A list of commands returns undefined. */
     spawnEach(options, poses) {
         array(poses, "poses");
         const size = sizeOf("pose");
@@ -29,7 +26,7 @@ export class Edits extends Handle {
         const ids = rest + poses.length * size;
         poses.forEach((pose, index) => {
             const { position, angle = 0 } = object(pose, `pose ${index}`);
-            // `write` skips undefined fields, and the memory would keep its earlier contents.
+            // `write` skips undefined fields.
             if (position === undefined) {
                 fail(`pose ${index} has no position`);
             }
@@ -73,7 +70,6 @@ export class Edits extends Handle {
         call("ls2d_set_shape", this.handle, id(shape, "a shape"), at);
     }
 
-    /** Adds a joint, and returns its handle. `anchor` and `axis` are in world coordinates, and need a world. */
     addJoint(options) {
         const { anchor, axis, ...definition } = object(options, "a joint");
         const size = sizeOf("joint_def");
@@ -96,8 +92,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a joint with the same definition between each pair of bodies, or no joint if one of them is refused.
-     * Returns their handles; a list of commands returns undefined. */
+    /** A list of commands returns undefined. */
     addJointEach(options, pairs) {
         array(pairs, "pairs");
         const size = sizeOf("joint_def");
@@ -167,8 +162,6 @@ export class Edits extends Handle {
         call("ls2d_move_to", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
     }
 
-    /** Sets damping, gravity scale, locks, sweeps and sleep settings. Settings that are not given get their defaults:
-     * `world.body` returns the current ones. */
     setBody(body, options) {
         onlyKnown(options, SETTINGS, "`setBody`");
         const at = scratch(sizeOf("body_def"));
@@ -180,8 +173,6 @@ export class Edits extends Handle {
         call("ls2d_set_kind", this.handle, id(body), bodyKind(type));
     }
 
-    /** Sets mass, centre of mass and radius of gyration, as `massOf` returns them. Without them, the body has the mass
-     * of its shapes. */
     setMass(body, mass) {
         const at = scratch(sizeOf("body_def"));
         writeBody(at, { mass });
@@ -227,7 +218,6 @@ export class Edits extends Handle {
     }
 }
 
-/** A list of edits, for replays and networks. */
 export class Commands extends Edits {
     constructor() {
         const at = scratch(8);
@@ -255,7 +245,6 @@ export class Commands extends Edits {
         return takeBytes(u32(at));
     }
 
-    /** Replaces the list by a list that is decoded from bytes. */
     fromBytes(bytes) {
         const at = give(bytes);
         call("ls2d_commands_decode", this.handle, at + 64, bytes.length);

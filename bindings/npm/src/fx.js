@@ -51,7 +51,7 @@ function parse(text, what) {
     return raw;
 }
 
-/** The raw integer of an argument that enters the simulation. A float is an error. */
+/** The raw integer of an argument. A float is an error. */
 export function rawOf(value, what = "a number") {
     if (value instanceof Fx) {
         return value.raw;
@@ -72,7 +72,6 @@ export function rawOf(value, what = "a number") {
     throw new Lockstep2dError("VALUE", `${what} is ${shown(value)}, and not an integer, a decimal text or an Fx`);
 }
 
-/** A fixed-point number. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
 export class Fx {
     constructor(raw) {
         if (typeof raw !== "bigint") {
@@ -141,17 +140,14 @@ export class Fx {
         return this.compare(other) === 0;
     }
 
-    /** The number rounded down to an integer, as a JavaScript number. */
     floor() {
         return Number(this.raw >> 32n);
     }
 
-    /** A float for drawing. It must not enter the simulation. */
     toNumber() {
         return Number(this.raw) / 4294967296;
     }
 
-    /** Decimal text that `fx` reads as the same number. */
     toString() {
         const magnitude = this.raw < 0n ? -this.raw : this.raw;
         const digits = divide((magnitude & (ONE - 1n)) * 10n ** 10n, ONE);
@@ -177,12 +173,10 @@ export class Fx {
     }
 }
 
-/** Makes a fixed-point number from an integer, or from decimal text: `fx("1.25")`. */
 export function fx(value) {
     return value instanceof Fx ? value : new Fx(rawOf(value));
 }
 
-/** A rotation in units of 2^-32 turn, counter-clockwise. */
 export class Angle {
     constructor(bits) {
         this.bits = Number(integer(bits, "bits of an angle", Number.MIN_SAFE_INTEGER, Number.MAX_SAFE_INTEGER)) >>> 0;
@@ -201,17 +195,14 @@ export class Angle {
         return new Angle(-this.bits);
     }
 
-    /** Degrees above -180 and up to 180, exact. */
     toDegrees() {
         return new Fx(signed(this.bits) * 360n);
     }
 
-    /** Radians above -pi and up to pi, rounded to nearest. */
     toRadians() {
         return new Fx((signed(this.bits) * 7244019458077122842n + (1n << 59n)) >> 60n);
     }
 
-    /** Radians above -pi and up to pi, for drawing. */
     toNumber() {
         return (Number(signed(this.bits)) / 4294967296) * 2 * Math.PI;
     }
@@ -230,29 +221,25 @@ export class Angle {
     }
 }
 
-/** Units of 2^-32 turn, above minus one half turn and up to plus one half turn. */
+/** Above minus one half turn and up to plus one half turn. */
 const signed = (bits) => (bits === 0x80000000 ? BigInt(bits) : BigInt.asIntN(32, BigInt(bits)));
 
 const angleOf = (raw) => new Angle(Number(BigInt.asUintN(32, raw)));
 
-/** An angle of a number of degrees: an integer or decimal text. */
 export function degrees(value) {
     const raw = rawOf(value, "an angle");
     const rest = raw % 360n;
     return angleOf(raw / 360n + (rest >= 180n ? 1n : rest <= -180n ? -1n : 0n));
 }
 
-/** An angle of a number of radians. */
 export function radians(value) {
     return angleOf((rawOf(value, "an angle") * 11743562013128004906n + (1n << 65n)) >> 66n);
 }
 
-/** An angle of a number of full turns: `turns("0.25")` is a right angle. */
 export function turns(value) {
     return angleOf(rawOf(value, "an angle"));
 }
 
-/** The bits of an argument that is an angle. */
 export function bitsOf(value, what = "an angle") {
     if (value instanceof Angle) {
         return value.bits;
@@ -263,7 +250,7 @@ export function bitsOf(value, what = "an angle") {
     throw new Lockstep2dError("VALUE", `${what} is degrees(45), radians("0.5"), turns("0.25") or 0, and not ${shown(value)}`);
 }
 
-/** Components of an argument that is a vector: `[x, y]` or `{ x, y }`. */
+/** The argument is `[x, y]` or `{ x, y }`. */
 export function vectorOf(value, what = "a vector") {
     if (Array.isArray(value) && value.length === 2) {
         return [rawOf(value[0], what), rawOf(value[1], what)];

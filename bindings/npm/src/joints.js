@@ -4,7 +4,7 @@ import { read } from "./library.js";
 
 const KINDS = ["revolute", "prismatic", "distance", "weld", "wheel", "motor", "filter", "gear", "rack", "pulley"];
 
-/** Reads a joint definition as the options of `addJoint`, so that `setJoint` takes it with changes. */
+/** Reads a joint definition as the options of `addJoint`. */
 export function readJoint(at) {
     const def = read("joint_def", at);
     const has = (bit, part) => ((def.flags & bit) === 0 ? {} : part);

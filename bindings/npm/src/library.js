@@ -6,7 +6,7 @@ import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
 
 export const NO_ID = 0xffffffffffffffffn;
 const NAMES = Object.fromEntries(Object.entries(STATUS).map(([name, code]) => [code, name]));
-// A module that is valid only if the machine supports SIMD: i8x16.popcnt of a splat.
+// Valid only if the machine supports SIMD: i8x16.popcnt of a splat.
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 const DECODER = new TextDecoder();
 const ENCODER = new TextEncoder();
@@ -50,8 +50,7 @@ async function load(modules, { simd, wasm }) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** Makes the function `init` for two inlined modules, with and without SIMD. After a call that has not failed, further
- * calls of `init` wait for it and change nothing. */
+/** Makes `init` for two inlined modules. Calls after a successful one change nothing. */
 export const initializer = (modules) => (options) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;
@@ -60,7 +59,6 @@ export const initializer = (modules) => (options) => {
     return starting;
 };
 
-/** The module that was loaded: `simd`, `plain` or `given`; undefined before `init`. */
 export function loaded() {
     return variant;
 }
@@ -72,7 +70,7 @@ export function library() {
     return exports;
 }
 
-// Recreates the views when the memory of the module has grown, because growth detaches the old buffer.
+// Growth of the memory detaches the old buffer.
 function memory() {
     if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
         bytes = new Uint8Array(exports.memory.buffer);
@@ -91,7 +89,6 @@ export function scratch(size) {
     return address;
 }
 
-/** Text of the last failure, or of the last verdict. */
 export function lastText() {
     const at = scratch(1024);
     exports.ls2d_last_error(at + 8, 1000, at);
@@ -111,7 +108,7 @@ export function statusOf(name, ...given) {
         throw new Lockstep2dError("INIT", "`init` of `lockstep2d/core` was called first: it loads a module without replays and matches");
     }
     for (const value of given) {
-        // WebAssembly would convert any other argument to an integer without an error.
+        // WebAssembly would convert other arguments without an error.
         if (typeof value !== "bigint" && !(Number.isInteger(value) && value >= 0 && value <= 0xffffffff)) {
             fail(`an argument of ${name.replace("ls2d_", "")} is an integer from 0 to 4294967295, and not ${shown(value)}`);
         }
@@ -121,7 +118,7 @@ export function statusOf(name, ...given) {
     return status;
 }
 
-/** Calls a function. Returns whether there was something to return; failures are thrown. */
+/** Returns whether there was something to return. Failures are thrown. */
 export function call(name, ...given) {
     const status = statusOf(name, ...given);
     if (status > STATUS.NONE) {
@@ -147,7 +144,7 @@ export function writeHash(at, text, what = "a hash") {
     view.setBigUint64(at, BigInt(`0x${text.slice(16)}`), true);
 }
 
-/** Returns the result of a call, or false if the body or joint is not in the world (any more). */
+/** Calls `attempt`, and returns false if the body or joint is not in the world. */
 export function found(attempt) {
     try {
         return attempt();
@@ -159,7 +156,6 @@ export function found(attempt) {
     }
 }
 
-/** Converts a handle of a body, shape or joint to the type that the library takes. */
 export function id(value, what = "a body") {
     if (Number.isSafeInteger(value) && value >= 0) {
         return BigInt(value);
@@ -198,15 +194,14 @@ const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-// For each struct, its fields with their names in JavaScript: name, offset, kind, and number of items of an array.
+// Fields of each struct: name in JavaScript, offset, kind, and number of items of an array.
 const FIELDS = Object.fromEntries(
     Object.entries(STRUCTS).map(([name, { fields }]) => [name, Object.entries(fields).map(([field, rest]) => [camel(field), ...rest])]),
 );
 
-/** Names of the fields of a struct as options, without some fields that are not options. */
+/** Fields of a struct that are options. */
 export const optionsOf = (name, without) => Object.keys(STRUCTS[name].fields).filter((field) => !without.includes(field)).map(camel);
 
-/** Writes the given fields of a struct. */
 export function write(name, at, values) {
     for (const [field, offset, kind, count] of FIELDS[name]) {
         const value = values[field];
@@ -231,7 +226,6 @@ export function write(name, at, values) {
     }
 }
 
-/** Reads a struct as an object. */
 export function read(name, at) {
     const result = {};
     for (const [field, offset, kind, count] of FIELDS[name]) {
@@ -242,13 +236,11 @@ export function read(name, at) {
     return result;
 }
 
-/** Address of a field of a struct. */
 export function fieldAt(name, at, field) {
     return at + STRUCTS[name].fields[field][0];
 }
 
-/** Copies bytes into memory, behind `reserved` bytes that the caller fills. Returns the address of the reserved
- * bytes. */
+/** Copies bytes into memory after `reserved` bytes. Returns the address of the reserved bytes. */
 export function give(data, reserved = 64, what = "the argument") {
     byteArray(data, what);
     const at = scratch(reserved + data.length);
@@ -261,12 +253,9 @@ export const giveText = (text, reserved = 64) => {
     return [give(data, reserved), data.length];
 };
 
-/** Writes bytes into memory. */
 export const putBytes = (at, data) => memory().set(data, at);
-/** Writes a raw 64-bit number into memory. */
 export const putRaw = (at, raw) => view.setBigInt64(at, raw, true);
 
-/** A copy of memory. */
 export const copy = (at, size) => memory().slice(at, at + size);
 
 /** Reads and frees a bytes object. */
@@ -285,9 +274,8 @@ export const text = (data) => DECODER.decode(data);
 
 let capacity = 64;
 
-/** Calls `ask`, which writes a list of items of `size` bytes, with larger and larger buffers until the list fits.
- * Returns the address of the list and the number of items. `prepare` writes other arguments to the `before` bytes in
- * front of the list. */
+/** Calls `ask`, which writes items of `size` bytes, with larger and larger buffers until they fit. Returns their
+ * address and number. `prepare` writes other arguments to the `before` bytes in front of them. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
         const at = scratch(8 + before + capacity * size);
@@ -307,7 +295,6 @@ export function list(size, before, ask, prepare = () => {}) {
 const registry =
     typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry((handle) => exports.ls2d_free(handle));
 
-/** An object that the library stores. `dispose` frees it at once; otherwise the garbage collector frees it later. */
 export class Handle {
     #handle;
 

@@ -1,4 +1,4 @@
-// Matches: the lockstep session with inputs, states and packets as bytes, and a driver that plays a game with it.
+// Matches, and a driver that plays a game with them.
 import { byteArray, count, fail, instance, integer, long, onlyKnown } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
@@ -15,7 +15,6 @@ const PACKET_MAX = 2048;
 
 const MATCH_OPTIONS = ["contact", "offer", "tickRate", ...optionsOf("match_config", ["size", "tick_micros"])];
 
-/** Converts milliseconds, as performance.now() returns them, to microseconds. */
 function micros(milliseconds, what = "the time") {
     if (typeof milliseconds !== "number" || !(milliseconds >= 0 && milliseconds < Number.MAX_SAFE_INTEGER / 1000)) {
         fail(`${what} is a number of milliseconds from 0, and not ${milliseconds}`);
@@ -35,11 +34,9 @@ function identity({ peer, key, secret }) {
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
-/** One participant of a match. `MatchDriver` fulfils its requests. */
 export class Match extends Handle {
     #inputs;
 
-    /** Opens a match, or joins one if there is a `contact`: the address of a participant, as bytes. */
     constructor(options) {
         const { contact, offer = new Uint8Array(), seats, peer, key, secret, ...config } =
             onlyKnown(options, MATCH_OPTIONS, "a match");
@@ -72,13 +69,11 @@ export class Match extends Handle {
         this.inputBytes = config.inputBytes ?? 1;
     }
 
-    /** Sends the request to join to another participant, or again to the same one. */
     ask(contact) {
         const at = give(contact, 64, "a contact");
         call("ls2d_match_ask", this.handle, at + 64, contact.length);
     }
 
-    /** Takes a packet from an address. `now` is in milliseconds. */
     receive(now, from, packet) {
         const at = give(packet, 64, "a packet");
         putAddress(at, from);
@@ -95,14 +90,12 @@ export class Match extends Handle {
         return u32(at) === 1;
     }
 
-    /** Issues the inputs of your own seats. Returns whether they were issued; if not, they may be passed again. */
     advance(now, inputs) {
         const at = give(inputs, 64, "the inputs");
         call("ls2d_match_advance", this.handle, micros(now), at + 64, inputs.length, at);
         return u32(at) === 1;
     }
 
-    /** The next request, to be fulfilled before `advance` is called again. */
     nextRequest() {
         return nextRequest("ls2d_match_next_request", this.handle, this.#inputs);
     }
@@ -113,7 +106,6 @@ export class Match extends Handle {
         call("ls2d_match_report_hash", this.handle, count(tick, "a tick"), at);
     }
 
-    /** The next packet to send: `{ to, packet }`. */
     nextPacket() {
         const at = scratch(16 + ADDRESS_MAX + PACKET_MAX);
         const [to, packet] = [at + 16, at + 16 + ADDRESS_MAX];
@@ -148,7 +140,6 @@ export class Match extends Handle {
         return u32(at) === 1;
     }
 
-    /** Offers the state after a number of final ticks to peers that join. */
     offerState(tick, state) {
         const at = give(state, 64, "the state");
         call("ls2d_match_offer_state", this.handle, count(tick, "a tick"), at + 64, state.length);
@@ -160,15 +151,12 @@ export class Match extends Handle {
         return STATUS[u32(at)];
     }
 
-    /** Numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `final` counts the
-     * ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. */
     ticks() {
         const at = scratch(16);
         call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);
         return { played: u32(at), final: u32(at + 4), confirmed: u32(at + 8) };
     }
 
-    /** The final inputs of all seats for a tick, as `Recorder.record` takes them, or undefined if they are not kept. */
     finalInputs(tick) {
         const at = scratch(16 + this.#inputs);
         if (!call("ls2d_match_final_inputs", this.handle, count(tick, "a tick"), at + 16, this.#inputs, at, at + 8)) {
@@ -177,7 +165,6 @@ export class Match extends Handle {
         return { inputs: copy(at + 16, u32(at)), absent: u64(at + 8) };
     }
 
-    /** Own seats, in ascending order. */
     get seats() {
         const at = scratch(8);
         call("ls2d_match_seats", this.handle, at);
@@ -185,7 +172,6 @@ export class Match extends Handle {
         return Array.from({ length: 64 }, (_, seat) => seat).filter((seat) => ((bits >> BigInt(seat)) & 1n) === 1n);
     }
 
-    /** Measurements of the network path to a peer, or undefined if there is no such peer. */
     link(peer) {
         const at = scratch(24);
         if (!call("ls2d_match_link", this.handle, count(peer, "a peer"), at, at + 8, at + 16)) {
@@ -226,14 +212,6 @@ const putAddress = (at, data) => {
     putBytes(at, data);
 };
 
-/** Plays a game in a match. The game has
- *
- * - `step(inputs, absent)`: advances by a tick with the inputs of all seats;
- * - `save()`, `load(saved)`: copies the whole state, restores it; `drop(saved)`, if there is something to free;
- * - `hash()`: the hash of the whole state, 32 hexadecimal digits;
- * - `encode()`, `decode(bytes)`: converts the state to bytes and back, for peers that join.
- *
- * `send(to, packet)` sends a packet to an address. Call `update` every few milliseconds. */
 export class MatchDriver {
     #match;
     #game;
@@ -253,12 +231,10 @@ export class MatchDriver {
         return this.#match;
     }
 
-    /** Number of ticks that the game has played. */
     get tick() {
         return this.#tick;
     }
 
-    /** Whether the match has finished and the game has played all of its ticks. */
     get ended() {
         return ["finished", "closed"].includes(this.#match.status) && this.#tick === this.#match.ticks().final;
     }
@@ -267,9 +243,6 @@ export class MatchDriver {
         this.#match.receive(now, from, packet);
     }
 
-    /** Advances the match to the time `now`, and plays the ticks that are due with the inputs that `readInputs(seats)`
-     * returns. Returns the events. If the game throws an error, its state is unknown: the driver throws the same error
-     * from then on. */
     update(now, readInputs) {
         if (this.#failure !== undefined) {
             throw this.#failure.error;
@@ -355,7 +328,7 @@ export class MatchDriver {
                 this.#match.reportHash(tick, this.#saved(tick).hash);
                 break;
             default:
-                // Keeps the newest state up to this tick, for peers that join.
+                // The newest state up to this tick is kept, for peers that join.
                 this.#forgetBefore(tick);
         }
     }

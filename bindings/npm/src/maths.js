@@ -1,4 +1,4 @@
-// Mathematics for the rules of a game. `fx.js` has the arithmetic.
+// Mathematics for the rules of a game.
 import { count, integer } from "./check.js";
 import { Angle, bitsOf, rawOf, vectorOf, Fx } from "./fx.js";
 import { call, fxAt, give, hashAt, library, scratch, u32, read } from "./library.js";
@@ -13,7 +13,6 @@ export const sqrt = (value) => {
 export const hypot = (x, y) => new Fx(library().ls2d_fx_hypot(rawOf(x), rawOf(y)));
 export const sin = (angle) => new Fx(library().ls2d_angle_sin(bitsOf(angle)));
 export const cos = (angle) => new Fx(library().ls2d_angle_cos(bitsOf(angle)));
-/** The direction of a vector. */
 export const angleOf = (value) => new Angle(library().ls2d_angle_of(...vectorOf(value)));
 export const dot = (a, b) => new Fx(library().ls2d_vec2_dot(...vectorOf(a), ...vectorOf(b)));
 export const cross = (a, b) => new Fx(library().ls2d_vec2_cross(...vectorOf(a), ...vectorOf(b)));
@@ -28,7 +27,6 @@ export const rotate = (value, angle) => {
     return vector(at);
 };
 
-/** A random number generator. Keep `state` in the state of the game. */
 export class Random {
     constructor(seed) {
         const at = scratch(16);
@@ -45,7 +43,6 @@ export class Random {
         return at;
     }
 
-    /** A uniform integer from 0 to below `bound`. */
     below(bound) {
         const at = this.#at();
         call("ls2d_rng_below", at, at, count(bound, "the bound"), at + 16);
@@ -53,7 +50,6 @@ export class Random {
         return u32(at + 16);
     }
 
-    /** A uniform number from `low` to below `high`. */
     range(low, high) {
         const at = this.#at();
         call("ls2d_rng_range", at, at, rawOf(low), rawOf(high), at + 16);
@@ -62,7 +58,6 @@ export class Random {
     }
 }
 
-/** Hash of bytes: 32 hexadecimal digits. */
 export function hashBytes(bytes) {
     const at = give(bytes, 64, "the data");
     call("ls2d_hash_bytes", at + 64, bytes.length, at);

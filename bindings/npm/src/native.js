@@ -1,4 +1,4 @@
-// Matches with native programs: encodes the data that `lockstep2d::peer::Peer<G>` sends besides inputs.
+// Matches with native programs: the data that `lockstep2d::peer::Peer<G>` sends besides inputs.
 import { Lockstep2dError } from "./error.js";
 import { library } from "./library.js";
 import { hashBytes } from "./maths.js";
@@ -9,8 +9,6 @@ const ENCODER = new TextEncoder();
 /** Little-endian bytes of a hash. */
 const hashOf = (digits) => Uint8Array.from({ length: 16 }, (_, index) => parseInt(digits.slice(30 - 2 * index, 32 - 2 * index), 16));
 
-/** The offer of a native `Peer<G>`. `setup` has the canonical bytes of `G::Setup`, and is empty for `()`. `patience` is
- * in milliseconds, as in `Match`. */
 export function nativeOffer({ rules, rulesVersion = 1, setup = new Uint8Array(), tickRate = 60, seats, inputBytes = 1, patience = 2000 }) {
     const name = ENCODER.encode(rules);
     const bytes = new Uint8Array(4 + 8 + name.length + 4 + 16 + 4 + 4 + 2 + 8);
@@ -28,7 +26,6 @@ export function nativeOffer({ rules, rulesVersion = 1, setup = new Uint8Array(),
     return bytes;
 }
 
-/** Encodes the state of a native game whose `Save` is a `Snapshot` of its world, for peers that join. */
 export function encodeNativeState(world) {
     const saved = world.toBytes();
     const bytes = new Uint8Array(24 + saved.length);
@@ -38,7 +35,6 @@ export function encodeNativeState(world) {
     return bytes;
 }
 
-/** Decodes the world from a state of `encodeNativeState` or of a native game. The bytes may come from any source. */
 export function decodeNativeState(bytes) {
     const world = World.fromBytes(bytes.subarray(24));
     const hash = hashOf(world.hash());

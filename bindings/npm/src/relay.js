@@ -1,21 +1,20 @@
-// A member of a room of a relay (crates/relay): carries the packets of matches over a WebSocket.
+// A member of a room of a relay.
 import { byteArray, fail, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
 const SECRET = 16;
-// First pause in milliseconds before a reconnection. The pause doubles with each failure.
+// First pause in milliseconds before a reconnection, doubled with each failure.
 const PAUSE_MIN = 250;
-// Longest pause in milliseconds before a reconnection.
+// Longest pause in milliseconds.
 const PAUSE_MAX = 8000;
-// Largest number of bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
+// Largest number of bytes that wait to be sent.
 const BUFFERED_MAX = 512 * 1024;
-// Close codes after which a member does not reconnect: a wrong secret, and another connection of the same member.
+// Close codes without reconnection: a wrong secret, and another connection of the same member.
 const FINAL = [4000, 4003];
 
 const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
 
-/** A member of a room. When the connection is lost, the member reconnects; packets are lost meanwhile. */
 export class Relay {
     #url;
     #secret;
@@ -25,17 +24,11 @@ export class Relay {
     #timer;
     #closed = false;
     #ready;
-    /** Address of this peer. */
     own;
-    /** Addresses of the other members of the room, in the order in which they entered. */
     others = [];
-    /** Called with the sender and the bytes of each packet. */
     onPacket = () => {};
-    /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers = () => {};
 
-    /** Enters a room, and creates it if it does not exist. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32
-     * letters, digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. */
     static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
         if (typeof WebSocket !== "function") {
             fail("there is no WebSocket here; pass one as option");
@@ -66,7 +59,6 @@ export class Relay {
         this.#WebSocket = WebSocket;
     }
 
-    /** Whether there is a connection at the moment. */
     get isOpen() {
         return this.#socket?.readyState === 1;
     }
@@ -77,7 +69,7 @@ export class Relay {
         this.#socket = socket;
         socket.onopen = () => socket.send(this.#secret);
         socket.onmessage = ({ data }) => (typeof data === "string" ? this.#members(JSON.parse(data)) : this.#packet(new Uint8Array(data)));
-        // After an error the socket is closed as well. The package `ws` throws errors that nobody listens to.
+        // The package `ws` throws errors without a listener.
         socket.onerror = () => {};
         socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
     }
@@ -106,8 +98,6 @@ export class Relay {
         this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
     }
 
-    /** Sends a packet. The packet is dropped if there is no connection, if too many bytes wait to be sent, or if `to`
-     * does not have the length of an address. */
     send(to, packet) {
         if (!this.isOpen || to.length !== ADDRESS || this.#socket.bufferedAmount > BUFFERED_MAX) {
             return;
@@ -118,7 +108,6 @@ export class Relay {
         this.#socket.send(frame);
     }
 
-    /** Leaves the room. */
     close() {
         this.#closed = true;
         clearTimeout(this.#timer);

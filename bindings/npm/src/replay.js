@@ -1,4 +1,4 @@
-// Replays of worlds that commands change, and of games with rules of their own.
+// Replays of worlds, and of games with their own rules.
 import { byteArray, count, instance, integer, long, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
 import { Commands } from "./edits.js";
@@ -18,7 +18,6 @@ function verdictAt(at) {
     return { ...verdict, text: lastText() };
 }
 
-/** Opens a file, and returns the handle. */
 function openAt(name, bytes, limits) {
     const verdict = 16;
     const limit = verdict + sizeOf("verdict");
@@ -32,7 +31,7 @@ function openAt(name, bytes, limits) {
     return u32(at);
 }
 
-/** Writes limits at an address, and returns the address. Without limits, returns 0, which selects the defaults. */
+/** Writes limits and returns their address, or 0 for the defaults. */
 function limitsAt(at, limits) {
     if (limits === undefined) {
         return 0;
@@ -43,7 +42,6 @@ function limitsAt(at, limits) {
     return at;
 }
 
-/** Verifies a replay of a world from any source. */
 export function verifyReplay(bytes, limits) {
     const before = sizeOf("verdict") + sizeOf("limits");
     const at = give(bytes, before);
@@ -51,9 +49,7 @@ export function verifyReplay(bytes, limits) {
     return verdictAt(at);
 }
 
-/** A world that is recorded while it runs. Only lists of commands change the world. */
 export class Recording extends Handle {
-    /** Starts from settings and the commands that set up the world. */
     constructor(options) {
         const { config = {}, setup, interval = 60 } = onlyKnown(options, ["config", "setup", "interval"], "a recording");
         instance(setup, Commands, "`setup`");
@@ -64,26 +60,22 @@ export class Recording extends Handle {
         super(u32(at));
     }
 
-    /** Executes the commands and advances by one tick. The list is empty afterwards. */
     step(commands) {
         call("ls2d_recording_step", this.handle, instance(commands, Commands, "the list").handle);
     }
 
-    /** A copy of the world. */
     world() {
         const at = scratch(8);
         call("ls2d_recording_world", this.handle, at);
         return new World(new Adopted(u32(at)));
     }
 
-    /** Returns the bytes that were finished since the last call, to be appended to a file. */
     take() {
         const at = scratch(8);
         call("ls2d_recording_take", this.handle, at);
         return takeBytes(u32(at));
     }
 
-    /** Ends the replay and returns the rest of its bytes. */
     finish() {
         const at = scratch(8);
         call("ls2d_recording_finish", this.handle, at);
@@ -96,9 +88,7 @@ function claim(name, handle, what, number) {
     call(name, handle, at + 64, length, BigInt(integer(number, "a claim", -(1n << 63n), (1n << 63n) - 1n)));
 }
 
-/** Records a game with rules of its own: the final inputs of every tick, and hashes of its states. */
 export class Recorder extends Handle {
-    /** `start` is the hash of the state before the first tick. */
     constructor(options) {
         const { rules, rulesVersion = 1, players, tickRate = 60, inputBytes, setup = new Uint8Array(), start, interval = 60 } =
             onlyKnown(options, RECORDER_OPTIONS, "a recorder");
@@ -115,15 +105,12 @@ export class Recorder extends Handle {
         super(u32(at + 16));
     }
 
-    /** Records the inputs of all players for the next tick, and a bit for each absent player, whose input has to be
-     * zeros. Returns whether `checkpoint` has to follow. */
     record(inputs, absent = 0n) {
         const at = give(inputs, 64, "the inputs");
         call("ls2d_recorder_record", this.handle, at + 64, inputs.length, long(absent, "the absent players"), at);
         return u32(at) === 1;
     }
 
-    /** Adds a result, such as a score, before the end. */
     claim(name, number) {
         claim("ls2d_recorder_claim", this.handle, name, number);
     }
@@ -144,7 +131,6 @@ export class Recorder extends Handle {
         return takeBytes(u32(at));
     }
 
-    /** Ends the replay with the hash of the last state, and returns the rest of its bytes. */
     finish(hash) {
         const at = this.#hash(hash);
         call("ls2d_recorder_finish", this.handle, at, at + 16);
@@ -152,11 +138,9 @@ export class Recorder extends Handle {
     }
 }
 
-/** A replay of a game with rules of its own, from any source. The game plays it. */
 export class Replay extends Handle {
     #inputs;
 
-    /** Throws an error with the code RECORD, and the `verdict`, if the file cannot be played. */
     constructor(bytes, limits) {
         super(openAt("ls2d_replay_open", bytes, limits));
         this.#describe();
@@ -175,7 +159,6 @@ export class Replay extends Handle {
         this.setup = takeBytes(u32(to));
     }
 
-    /** The results that the file states: true if the verdict is a match. */
     get claims() {
         const claims = new Map();
         for (let index = 0; ; index++) {
@@ -188,7 +171,6 @@ export class Replay extends Handle {
         }
     }
 
-    /** The inputs of all players for the next tick and a bit for each absent player, or undefined at the end. */
     next() {
         const at = scratch(16 + this.#inputs);
         if (!call("ls2d_replay_next", this.handle, at + 16, this.#inputs, at, at + 8)) {
@@ -197,36 +179,28 @@ export class Replay extends Handle {
         return { inputs: copy(at + 16, this.#inputs), absent: u64(at + 8) };
     }
 
-    /** Starts seeking to a tick: `nextRequest` returns the requests. At the first call the game has to be in the state
-     * before the first tick. */
     seek(tick) {
         call("ls2d_replay_seek", this.handle, long(tick, "a tick"));
     }
 
-    /** The next request on the way to a tick: `save`, `load`, `advance`, or `checksum`, which `check` answers. */
     nextRequest() {
         return nextRequest("ls2d_replay_next_request", this.handle, this.#inputs);
     }
 
-    /** Sets the interval in ticks at which seeking requests to save the state. */
     setInterval(ticks) {
         call("ls2d_replay_set_interval", this.handle, count(ticks, "the interval"));
     }
 
-    /** Adds a result of the game that was played. The verdict compares all added results with those in the file. */
     claim(name, number) {
         claim("ls2d_replay_claim", this.handle, name, number);
     }
 
-    /** Compares the hash of the game's state with the file. Call it before the first tick and after every tick, or,
-     * while seeking, for each request `checksum`. */
     check(hash) {
         const at = scratch(16);
         writeHash(at, hash);
         call("ls2d_replay_check", this.handle, at);
     }
 
-    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
     verdict(hash) {
         const at = scratch(16 + sizeOf("verdict"));
         writeHash(at, hash);
@@ -235,13 +209,6 @@ export class Replay extends Handle {
     }
 }
 
-/** Goes to any tick of a replay with a game, which has
- *
- * - `step(inputs, absent)`: advances by a tick with the inputs of all players;
- * - `save()`, `load(saved)`: copies the whole state, restores it; `drop(saved)`, if there is something to free;
- * - `hash()`: the hash of the whole state, 32 hexadecimal digits.
- *
- * The game begins in the state before the first tick. */
 export class ReplayDriver {
     #replay;
     #game;
@@ -254,14 +221,10 @@ export class ReplayDriver {
         this.#game = game;
     }
 
-    /** Current tick: the game is in the state after this number of ticks. */
     get tick() {
         return this.#tick;
     }
 
-    /** Goes to a tick. If it was played before, this simulates fewer ticks than the interval of the saved states.
-     * Throws an error with the code RECORD if the game diverges from the file. The driver then stays at that tick, and
-     * earlier ticks can be reached. */
     seek(tick) {
         if (this.#isDisposed) {
             throw new Lockstep2dError("DISPOSED", "this ReplayDriver was disposed");
@@ -272,17 +235,14 @@ export class ReplayDriver {
         }
     }
 
-    /** Goes forward by a tick, which is always simulated, even if its state is saved. Returns false at the end. */
     step() {
         return this.#by(1);
     }
 
-    /** Goes back by a tick. Returns false at the start. */
     stepBack() {
         return this.#by(-1);
     }
 
-    /** Frees the saved states. The driver cannot be used afterwards. */
     dispose() {
         this.#saves.forEach((saved) => this.#game.drop?.(saved));
         this.#saves.clear();
@@ -318,9 +278,7 @@ export class ReplayDriver {
 }
 disposable(ReplayDriver);
 
-/** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {
-    /** Throws an error with the code RECORD, and the `verdict`, if the file cannot be played. */
     constructor(bytes, limits) {
         super(openAt("ls2d_timeline_open", bytes, limits));
         const at = scratch(8);
@@ -334,22 +292,18 @@ export class Timeline extends Handle {
         return Number(u64(at));
     }
 
-    /** Goes to a tick. This is fast if the tick was played before. */
     seek(tick) {
         call("ls2d_timeline_seek", this.handle, long(tick, "a tick"));
     }
 
-    /** Goes forward by a tick. Returns false at the end. */
     step() {
         return call("ls2d_timeline_step", this.handle);
     }
 
-    /** Goes back by a tick. Returns false at the start. */
     stepBack() {
         return call("ls2d_timeline_step_back", this.handle);
     }
 
-    /** A copy of the world at the current tick, for drawing and queries. */
     world() {
         const at = scratch(8);
         call("ls2d_timeline_world", this.handle, at);

@@ -1,9 +1,9 @@
-// Requests of a match or a replay to a game: to save, restore and advance its state.
+// Requests of a match or a replay to a game.
 import { call, copy, read, scratch, sizeOf, u32 } from "./library.js";
 
 const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
 
-/** The next request of a match or of a replay. `inputBytes` is the number of bytes of the inputs of a tick. */
+/** `inputBytes` is the number of bytes of the inputs of a tick. */
 export function nextRequest(name, handle, inputBytes) {
     const size = sizeOf("request");
     const at = scratch(8 + size + inputBytes);

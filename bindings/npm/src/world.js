@@ -15,7 +15,6 @@ const KINDS = ["fixed", "kinematic", "dynamic"];
 const OPTIONS = Object.entries(BODY_FLAGS);
 const SWEEPS = ["off", "fixed", "bullet", "kinematic"];
 
-/** A saved state in memory. */
 export class Snapshot extends Handle {
     hash() {
         const at = scratch(16);
@@ -24,7 +23,7 @@ export class Snapshot extends Handle {
     }
 }
 
-/** Writes a filter at an address, and returns the address. Without a filter, returns 0, which selects the defaults. */
+/** Writes a filter and returns its address, or 0 for the defaults. */
 function filterAt(at, filter) {
     if (filter === undefined) {
         return 0;
@@ -35,7 +34,6 @@ function filterAt(at, filter) {
 
 const FILTER = () => sizeOf("query_filter");
 
-/** A physics world. */
 export class World extends Edits {
     constructor(options = {}) {
         super(options instanceof Adopted ? options.handle : World.#make(options));
@@ -53,7 +51,6 @@ export class World extends Edits {
         return u32(at);
     }
 
-    /** Makes a world from bytes, which may come from any source. */
     static fromBytes(bytes) {
         const at = give(bytes);
         call("ls2d_world_decode", at + 64, bytes.length, at);
@@ -72,27 +69,22 @@ export class World extends Edits {
         return new World(new Adopted(u32(at)));
     }
 
-    /** Advances the world by one tick, or by several. */
     step(ticks = 1) {
         call("ls2d_world_steps", this.handle, u32Of(ticks, "the number of ticks"));
     }
 
-    /** Executes a list of commands, and returns how many of them were refused. */
     execute(commands) {
         const at = scratch(8);
         call("ls2d_world_execute", this.handle, instance(commands, Commands, "the list").handle, at);
         return u32(at);
     }
 
-    /** Hash of the state: 32 hexadecimal digits, the same on every machine. */
     hash() {
         const at = scratch(16);
         call("ls2d_world_hash", this.handle, at);
         return hashAt(at);
     }
 
-    /** Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
-     * 5 islands, 6 random numbers. */
     digest(section) {
         const at = scratch(16);
         call("ls2d_world_digest", this.handle, u32Of(section, "a section"), at);
@@ -125,7 +117,6 @@ export class World extends Edits {
         return { ...rest, sleeping: (flags & C.SLEEPING) !== 0, continuous: (flags & C.CONTINUOUS) !== 0 };
     }
 
-    /** Changes settings. Settings that are not given keep their values. */
     setConfig(options) {
         const at = scratch(sizeOf("config"));
         call("ls2d_world_config", this.handle, at);
@@ -133,14 +124,12 @@ export class World extends Edits {
         call("ls2d_set_config", this.handle, at);
     }
 
-    /** A uniform integer from 0 to below `bound`, from the generator of the world, which is part of its state. */
     random(bound) {
         const at = scratch(8);
         call("ls2d_world_random_below", this.handle, u32Of(bound, "the bound"), at);
         return u32(at);
     }
 
-    /** A uniform number from `low` to below `high`. */
     randomRange(low, high) {
         const at = scratch(8);
         call("ls2d_world_random_range", this.handle, rawOf(low), rawOf(high), at);
@@ -153,7 +142,6 @@ export class World extends Edits {
         return new Snapshot(u32(at));
     }
 
-    /** Saves into an existing snapshot, and reuses its memory: the fastest way to save every tick. */
     saveInto(snapshot) {
         call("ls2d_world_save_into", this.handle, instance(snapshot, Snapshot, "the snapshot").handle);
     }
@@ -162,7 +150,6 @@ export class World extends Edits {
         call("ls2d_world_restore", this.handle, instance(snapshot, Snapshot, "the snapshot").handle);
     }
 
-    /** Properties of a body, or undefined if it is not in the world. */
     body(body) {
         const at = scratch(sizeOf("body_info"));
         if (!found(() => call("ls2d_body_get", this.handle, id(body), at))) {
@@ -177,14 +164,12 @@ export class World extends Edits {
         return info;
     }
 
-    /** Name of a body, or undefined if it has none or is not in the world. */
     bodyName(body) {
         const at = scratch(16);
         const known = found(() => call("ls2d_body_name", this.handle, id(body), at));
         return known ? text(copy(at, 16)).replace(/\0+$/, "") || undefined : undefined;
     }
 
-    /** Velocity of the material point of a body at a point of the world. */
     velocityAt(body, point) {
         const at = scratch(16);
         call("ls2d_body_velocity_at", this.handle, id(body), ...raws(point, "point"), at);
@@ -196,7 +181,6 @@ export class World extends Edits {
         return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
     }
 
-    /** Handles of all bodies in slot order. */
     bodies() {
         return this.#ids("ls2d_world_bodies");
     }
@@ -217,7 +201,6 @@ export class World extends Edits {
         return this.#ids("ls2d_sensor_overlaps", [id(shape, "a shape")]);
     }
 
-    /** Body and definition of a shape, as the library stores it. */
     shape(shape) {
         const at = scratch(8 + sizeOf("shape_def"));
         call("ls2d_shape_get", this.handle, id(shape, "a shape"), at + 8, at);
@@ -228,20 +211,17 @@ export class World extends Edits {
         return { ...rest, type: ["circle", "segment", "polygon", "capsule", "link"][rest.kind], body: idAt(at), points: all };
     }
 
-    /** A box around a shape with some margin, in the world. */
     shapeBox(shape) {
         const at = scratch(sizeOf("aabb"));
         call("ls2d_shape_box", this.handle, id(shape, "a shape"), at);
         return read("aabb", at);
     }
 
-    /** Distance between two shapes, or undefined if one of them is not in the world, or its body is disabled. */
     shapeDistance(a, b) {
         const at = scratch(8);
         return call("ls2d_shape_distance", this.handle, id(a, "a shape"), id(b, "a shape"), at) ? fxAt(at) : undefined;
     }
 
-    /** Type, bodies, frames and parts of a joint, as options of `addJoint`. */
     joint(joint) {
         const at = scratch(sizeOf("joint_def"));
         call("ls2d_joint_get", this.handle, id(joint, "a joint"), at);
@@ -265,7 +245,6 @@ export class World extends Edits {
         return known ? { force: { x: fxAt(at), y: fxAt(at + 8) }, torque: fxAt(at + 16) } : undefined;
     }
 
-    /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */
     poses(target) {
         if (target !== undefined && !(target instanceof Float64Array)) {
             fail(`the target is a Float64Array, and not ${shown(target)}`);
@@ -287,7 +266,6 @@ export class World extends Edits {
         return Array.from({ length: count }, (_, index) => read(struct, at + size * index));
     }
 
-    /** The events of the last tick. */
     events() {
         const moved = this.#events("ls2d_events_moved", "pose");
         return {
@@ -306,7 +284,6 @@ export class World extends Edits {
         return { ...rest, startsInside: startsInside === 1n };
     }
 
-    /** The first shape that a ray meets, from a point along a translation. */
     castRay(origin, translation, filter) {
         const at = scratch(sizeOf("ray_hit") + FILTER());
         const seen = filterAt(at + sizeOf("ray_hit"), filter);
@@ -314,7 +291,6 @@ export class World extends Edits {
         return call("ls2d_cast_ray", this.handle, ...ray, seen, at) ? this.#hit("ray_hit", at) : undefined;
     }
 
-    /** Every shape that a ray meets, in the order of the hits along the ray. */
     castRayAll(origin, translation, filter) {
         const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
         const size = sizeOf("ray_hit");
@@ -330,7 +306,6 @@ export class World extends Edits {
         writeShape(fieldAt("probe", at, "shape"), shape);
     }
 
-    /** The first shape that a shape meets as it moves along a translation. */
     castShape(shape, position, translation, { angle, ...filter } = {}) {
         const [hit, probe] = [sizeOf("cast_hit"), sizeOf("probe")];
         const at = scratch(hit + probe + FILTER());
@@ -345,7 +320,6 @@ export class World extends Edits {
         return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
     }
 
-    /** Shapes that overlap a shape, in slot order. */
     overlapShape(shape, position, { angle, ...filter } = {}) {
         const probe = sizeOf("probe");
         return this.#overlaps(probe + FILTER(), (shapes, capacity, count, before) => {
@@ -354,7 +328,6 @@ export class World extends Edits {
         });
     }
 
-    /** Shapes that overlap a box from its lower left to its upper right corner. */
     overlapBox(lower, upper, filter) {
         return this.#overlaps(32 + FILTER(), (shapes, capacity, count, before) => {
             write("aabb", before, { lower, upper });
@@ -362,14 +335,12 @@ export class World extends Edits {
         });
     }
 
-    /** Shapes that contain a point. */
     overlapPoint(point, filter) {
         const at = raws(point, "point");
         return this.#overlaps(FILTER(), (shapes, capacity, count, before) =>
             library().ls2d_overlap_point(this.handle, ...at, filterAt(before, filter), shapes, capacity, count));
     }
 
-    /** The shape nearest to a point, within a distance. */
     closest(point, within, filter) {
         const size = sizeOf("closest_point");
         const at = scratch(size + FILTER());
@@ -379,10 +350,9 @@ export class World extends Edits {
     }
 }
 
-/** Marks a handle of an existing world, which the constructor of `World` takes over. */
+/** A handle that the constructor of `World` takes over. */
 export class Adopted {
     constructor(handle) {
         this.handle = handle;
     }
 }
-

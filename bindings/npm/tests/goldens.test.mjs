@@ -1,4 +1,4 @@
-// Replays of seven golden scenes, or of all with LOCKSTEP2D_LONG=1, and the falling box end in their committed hashes.
+// Replays of seven golden scenes, or of all with LOCKSTEP2D_LONG=1, and the falling box.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { test } from "node:test";

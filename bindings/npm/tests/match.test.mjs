@@ -1,12 +1,10 @@
-// Matches: peers in one process, on a network that drops and delays packets, have equal states. Peers that join late
-// do, too.
+// Peers on a network that drops and delays packets have equal states, also if they join late.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";
 
 const address = (index) => Uint8Array.of(index);
 
-/** Boxes that the players push. The world is the whole state. */
 class Push {
     constructor() {
         this.world = new L.World();
@@ -44,7 +42,6 @@ class Push {
     }
 }
 
-/** Peers and a network between them. */
 class Net {
     now = 0;
     peers = [];

@@ -1,4 +1,4 @@
-// Replays of worlds: recording, verification, limits, seeking. Replays of games whose rules are in JavaScript.
+// Replays of worlds, and of games whose rules are in JavaScript.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -54,7 +54,7 @@ test("a recorded world verifies, and a changed file does not", () => {
     timeline.dispose();
 });
 
-// A game that sums the inputs of each player and counts the ticks with an absent player. All sums are hashed.
+// Sums the inputs of each player and counts the ticks with an absent player.
 class Sums {
     sums = [0, 0, 0];
     step(inputs, absent) {
@@ -149,7 +149,7 @@ test("a game with rules in JavaScript goes to any tick of its replay", () => {
     driver.dispose();
     assert.equal(dropped, 6);
 
-    // A game that diverges: only earlier ticks can be reached.
+    // After a difference, earlier ticks can be reached.
     const wrong = new Sums();
     const other = new L.ReplayDriver(new L.Replay(record(300)), wrong);
     other.seek(130);
@@ -176,7 +176,7 @@ test("files are opened and refused, although reading them moves the memory", () 
     for (let attempt = 0; attempt < 20; attempt++) {
         const before = library().memory.buffer;
         assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
-        // The timelines that are kept use up the free memory, so that the memory grows for the next one.
+        // The kept timelines use up the free memory.
         kept.push(new L.Timeline(replay));
         assert.equal(kept.at(-1).ticks, 20);
         moved += library().memory.buffer === before ? 0 : 1;

@@ -1,4 +1,4 @@
-// Worlds: definitions, queries, events, snapshots, errors, memory.
+// Worlds.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -70,7 +70,7 @@ test("all joints and shapes can be defined", () => {
     const shapes = [L.circle("0.5"), L.capsule([0, 0], [1, 0], "0.2"), L.polygon([[0, 0], [1, 0], [0, 1]], { rounding: "0.05" }),
         L.hull([[0, 0], [0, 1], [1, 0], ["0.1", "0.1"]]), L.box(1, "0.1", { density: 3 })];
     const bodies = shapes.map((shape, index) => world.spawn({ position: [3 * index, 5], name: `b${index}`, shapes: [shape] }));
-    // The rod and the rope have the lengths that they need: a joint that is violated by metres causes faults.
+    // A joint that is violated by metres would cause faults.
     const kinds = [
         { type: "revolute", anchor: [1, 5], limit: ["-0.5", "0.5"], motor: { speed: 1, max: 10 } },
         { type: "prismatic", anchor: [1, 5], axis: [0, 1], spring: { hertz: 2, dampingRatio: "0.5", target: 0 } },

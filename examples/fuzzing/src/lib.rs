@@ -1,14 +1,14 @@
 //! A game with a mistake, for `docs/FUZZING.md`: two players walk over a field and pick fruit.
 //!
-//! A player that reaches for fruit gets the first one nearby. The fruit is kept in a `HashMap`, whose iteration order
-//! is random, so the result is only deterministic while at most one piece is nearby.
+//! A player that reaches for fruit gets the first one nearby. The fruit is in a `HashMap`, whose iteration order is
+//! random.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::Rng;
 use serde::{Deserialize, Serialize};
 
-/// The mistake: the iteration order of a `HashMap` is random.
+/// The mistake.
 #[expect(clippy::disallowed_types, reason = "the planted mistake that fuzzing has to find")]
 type Fruit = std::collections::HashMap<(i16, i16), u32>;
 
@@ -25,7 +25,7 @@ pub enum Action {
         /// Sign of the step upwards.
         y: i8,
     },
-    /// Picks one piece of fruit at most two steps away along each axis.
+    /// Picks a piece of fruit at most two steps away along each axis.
     Reach,
 }
 
@@ -49,7 +49,7 @@ pub struct Player {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Save {
     players: [Player; 2],
-    /// Sorted, so that the same fruit always has the same encoding.
+    /// Sorted, so that equal fruit has one encoding.
     fruit: Vec<((i16, i16), u32)>,
     rng: Rng,
     tick: u64,
@@ -57,7 +57,7 @@ pub struct Save {
 
 /// Steps from the centre to the edge of the field.
 const EDGE: i16 = 12;
-/// Maximum number of pieces of fruit on the field.
+/// Maximum number of pieces of fruit.
 const FRUIT_MAX: usize = 40;
 
 impl Game for Harvest {
@@ -100,7 +100,7 @@ impl Game for Harvest {
                 }
                 Action::Reach => {
                     let is_near = |(x, y): (i16, i16)| (x - player.x).abs() <= 2 && (y - player.y).abs() <= 2;
-                    // The mistake has its effect here: `find` returns the first match in random order.
+                    // The effect of the mistake: the first match in random order.
                     let found = self.fruit.keys().copied().find(|place| is_near(*place));
                     let weight = found.and_then(|place| self.fruit.remove(&place));
                     player.weight += u64::from(weight.unwrap_or(0));

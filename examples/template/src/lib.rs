@@ -1,7 +1,7 @@
 //! The game: two players push a ball, each towards the goal of the other.
 //!
-//! The rules are in `step`. They use fixed-point numbers only (`Fx`), so that the same inputs give the same match on
-//! every machine.
+//! The rules are in `step`. They use fixed-point numbers (`Fx`), so that equal inputs give equal matches on every
+//! machine.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Name, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Number of goals that wins the match.
 const GOALS_TO_WIN: u32 = 5;
-/// Half of the length and of the height of the field, in metres.
+/// Half of the length and height of the field, in metres.
 const FIELD: (Fx, Fx) = (fx!(8), fx!(4));
 /// Driving force of a player, in N.
 const FORCE: Fx = fx!(30);
@@ -25,12 +25,12 @@ pub struct Setup {
     pub handicap: [u32; 2],
 }
 
-/// Input of a player for a tick: direction of the force, each component -1, 0 or 1.
+/// Input of a player for a tick: direction of the force, components -1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// Horizontal component, positive to the right.
+    /// Positive to the right.
     pub x: i8,
-    /// Vertical component, positive upwards.
+    /// Positive upwards.
     pub y: i8,
 }
 
@@ -49,7 +49,7 @@ pub struct Rules {
     pub goals: [u32; 2],
 }
 
-/// A complete copy of the state. The handles of the bodies never change.
+/// A copy of the state. The handles of the bodies never change.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Save {
     world: Snapshot,
@@ -104,7 +104,7 @@ impl MyGame {
 
     fn push(&mut self, inputs: &[Input]) -> Result<(), WorldError> {
         for (player, input) in self.players.into_iter().zip(inputs) {
-            // An input may come from an untrusted file, and have any value.
+            // An untrusted file may have any value.
             let axis = |value: i8| FORCE * Fx::from(value.signum());
             self.world.apply_force_to_centre(player, Vec2::new(axis(input.x), axis(input.y)))?;
         }
@@ -129,7 +129,7 @@ impl Game for MyGame {
     type Input = Input;
     type Save = Save;
 
-    /// Raise the version whenever a change of the rules leads to other states from the same inputs.
+    /// Raise the version when a change of the rules leads to other states.
     const RULES: RulesId = RulesId { name: "my game", version: 1 };
 
     fn new(setup: &Setup) -> Result<Self, SetupError> {
@@ -140,18 +140,17 @@ impl Game for MyGame {
         2
     }
 
-    /// The rate of the world, which makes one step in a tick.
     fn tick_rate(&self) -> u32 {
         self.world.config().tick_rate
     }
 
     fn step(&mut self, inputs: &[Input]) {
         let pushed = if self.is_over() { Ok(()) } else { self.push(inputs) };
-        // The step cannot fail, so the world advances in every tick, even if an input has been refused.
+        // The world advances in every tick, even if an input has been refused.
         self.world.step();
         let judged = self.judge();
-        // An error is a defect of the rules, unless the state comes from an untrusted save. The tick then continues
-        // without the refused change, in the same way on every machine.
+        // An error is a defect of the rules, unless the state comes from an untrusted save. Every machine continues
+        // alike.
         if let Err(error) = pushed.and(judged) {
             debug_assert!(false, "tick {}: {error}", self.world.tick());
         }

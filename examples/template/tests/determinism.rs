@@ -1,4 +1,4 @@
-//! A match depends only on its inputs: on every machine, in all variants of the determinism check, and in a replay.
+//! A match depends only on its inputs.
 
 use lockstep2d::check::{CheckOptions, check};
 use lockstep2d::lockstep::Game;
@@ -6,11 +6,10 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
 use my_game::{Input, MyGame, Setup};
 
-/// State hash after 600 ticks. Raise the version of the rules when a change of the rules changes it. It never
-/// depends on the machine, the compiler or the optimisation.
+/// State hash after 600 ticks. Raise the version of the rules when a change of the rules changes it.
 const GOLDEN: &str = "621d889f2e803eaa07536dddb610306e";
 
-/// Inputs of both players for some ticks: new directions twice a second.
+/// New directions twice a second.
 fn inputs(ticks: usize) -> Vec<Vec<Input>> {
     let mut rng = Rng::new(1);
     let mut axis = || i8::try_from(rng.below(3)).map_or(0, |number| number - 1);

@@ -1,8 +1,7 @@
-//! Targets whose input is a file or packets. Most files are refused within microseconds, so that millions can be
-//! tried.
+//! Targets whose input is a file or packets.
 //!
-//! If the input is a file, its first byte determines the meaning of the rest: the bytes of a file, or changes to an
-//! original file, with or without repaired checksums.
+//! The first byte of a file's input selects the rest: the bytes of a file, or changes of an original file, with or
+//! without repaired checksums.
 
 pub mod replay;
 pub mod report;
@@ -12,14 +11,13 @@ pub mod snapshot;
 use crate::forge::mutate;
 use crate::source::Source;
 
-/// A file made from an input.
 struct Attempt<'a> {
     file: Vec<u8>,
-    /// The original, if `file` is a changed copy of an original file.
+    /// The original, if `file` is a changed copy of one.
     original: Option<&'a [u8]>,
 }
 
-/// Makes a file from an input. `originals` are the files that may be changed, and `repair` corrects all checksums.
+/// Makes a file from an input. `repair` corrects all checksums.
 fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<u8>)) -> Attempt<'a> {
     let Some((&mode, rest)) = bytes.split_first() else {
         return Attempt { file: Vec::new(), original: None };
@@ -41,7 +39,7 @@ fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<
     Attempt { file, original }
 }
 
-/// Changes a few bytes, or copies a piece of one of the originals into the file.
+/// Changes a few bytes, or copies a piece of an original into the file.
 fn change(source: &mut Source<'_>, file: &mut Vec<u8>, originals: &[Vec<u8>]) {
     if !source.one_in(8) {
         return mutate(source, file);

@@ -26,7 +26,7 @@ pub(super) const LIMITS: Limits = Limits {
     total_work: 4000,
 };
 
-/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy of one of them.
+/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
     let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);
@@ -36,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory, sandbox, empty, cut]
 });
 
-/// A setup with a dynamic ball above a fixed one, and the inputs of five ticks, two of which set the gravity.
+/// A dynamic ball above a fixed one, and the inputs of five ticks.
 pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
     let low = spawn(BodyDef::fixed(), &[ball]);
@@ -46,7 +46,6 @@ pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     (setup, [[vec![]], [vec![]], [vec![push.clone()]], [vec![push]], [vec![]]])
 }
 
-/// Records a game.
 pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsRef<[G::Input]>]) -> Vec<u8> {
     let mut recording = Recording::<G>::start(setup, interval).expect("a valid setup");
     for inputs in ticks {
@@ -58,8 +57,7 @@ pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsR
 /// Verifies a file and returns the name of the verdict.
 ///
 /// # Panics
-/// When the verdict is `Match`, but the file is a changed original, or a recorder writes other bytes for the same
-/// inputs.
+/// When a changed original matches, or a matching file is not what a recorder writes.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, forge::repair);
     let verdict = match judge::<Memory>(&attempt.file) {

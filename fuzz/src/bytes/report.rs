@@ -12,8 +12,7 @@ use super::replay::{LIMITS, ball};
 use crate::memory::Memory;
 use crate::snapshots::repair;
 
-/// Reports of [`Memory`] and of a [`Sandbox`]: for each game a correct one, and one of a peer that diverged after two
-/// ticks.
+/// For [`Memory`] and for [`Sandbox`], a correct report and one of a peer that diverged after two ticks.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = |fail: bool| {
         report::<Memory>(&(), &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0]], |game, tick| {
@@ -37,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory(false), memory(true), sandbox(false), sandbox(true)]
 });
 
-/// The reports of the peers that follow the rules: the first and the third.
+/// The reports of the peers that follow the rules.
 static RIGHT: LazyLock<[Evidence; 2]> = LazyLock::new(|| {
     [0, 2].map(|at: usize| {
         Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report is valid")
@@ -67,7 +66,7 @@ fn report<G: Game>(
     DesyncReport::within(4000, &desync, &history, replay).to_bytes()
 }
 
-/// Reads a file and compares it with a correct report. Returns the result as one word.
+/// Reads a file, compares it with a correct report, and returns the result as one word.
 ///
 /// # Panics
 /// When an accepted report has another encoding, or a side that followed the rules is blamed.

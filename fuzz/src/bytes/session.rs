@@ -1,19 +1,15 @@
-//! Sends changed packets to three peers: two that play, and one that joins them.
+//! Sends changed packets to two peers that play and to one that joins them after 20 ticks.
 //!
-//! The first two peers connect and play from the start; the third begins to join after 20 ticks. After 20 to 39 ticks
-//! the attacks of the input follow. Each attack selects one of the last 64 packets, a change, a sender and a receiver,
-//! and whether the checksum is repaired.
+//! After 20 to 39 ticks the attacks of the input follow. Each takes one of the last 64 packets.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 
 use crate::forge::mutate;
 use crate::source::Source;
 
-/// The tag of the match.
 const TAG: u64 = 5;
 /// Largest number of attacks of an input.
 const ATTACKS: usize = 24;
-/// Number of endpoints.
 const COUNT: usize = 3;
 
 struct Match {
@@ -42,7 +38,7 @@ impl Match {
         Match { endpoints, now: 0, seen: Vec::new() }
     }
 
-    /// Simulates a tick, and delivers all packets at its end.
+    /// Simulates a tick. Packets arrive at its end.
     fn step(&mut self, active: usize) {
         self.now += 16_667;
         let mut sent = Vec::new();

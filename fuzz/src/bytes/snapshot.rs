@@ -15,7 +15,7 @@ use crate::snapshots::repair;
 /// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 1000;
 
-/// Snapshots of five worlds: empty, with two touching bodies, jointed, asleep, with vacant slots.
+/// Snapshots of five worlds: empty, touching, jointed, asleep, with vacant slots.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let empty = World::new(Config::default()).expect("valid");
     let mut touching = empty.clone();

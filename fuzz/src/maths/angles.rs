@@ -23,7 +23,7 @@ pub(super) fn check(source: &mut Source<'_>) {
     }
 }
 
-/// Checks sine and cosine: the error is at most 0.8 units of 2^-30.
+/// The error is at most 0.8 units of 2^-30.
 fn sines(angle: Angle) {
     let (sin, cos) = sin_cos(angle.to_bits());
     for (found, exact) in [(angle.sin(), sin), (angle.cos(), cos)] {
@@ -34,7 +34,7 @@ fn sines(angle: Angle) {
 }
 
 fn units(source: &mut Source<'_>, angle: Angle) {
-    // The signed angle is above minus one half turn and at most one half turn.
+    // The signed angle is in (-1/2, 1/2] turns.
     let signed = match i64::from(angle.to_bits()) {
         bits if bits > 1 << 31 => bits - (1 << 32),
         bits => bits,
@@ -54,12 +54,12 @@ fn units(source: &mut Source<'_>, angle: Angle) {
     assert_eq!(bits(Angle::from_turns(x)), wrapped(x.to_bits().into()));
     assert_eq!(bits(Angle::from_degrees(x)), wrapped(halves_away(&(of(x) / exact::integer(360)), 32)), "{x}");
     let exact = halves_up(&(of(x) / turn), 32);
-    // The engine multiplies by a rounded constant, which adds an error of at most a sixteenth of a unit.
+    // The engine multiplies by a rounded constant: up to a sixteenth of a unit.
     let off = wrapped(bits(Angle::from_radians(x)) - exact + 1);
     assert!(off <= BigInt::from(2), "{x} rad");
 }
 
-/// Checks the angles of vectors: the error is at most 0.7 units of 2^-32 turn.
+/// The error is at most 0.7 units of 2^-32 turn.
 fn directions(source: &mut Source<'_>) {
     let v = if source.one_in(2) {
         vector(source)
@@ -74,7 +74,7 @@ fn directions(source: &mut Source<'_>) {
     let (x, y) = (BigInt::from(v.x.to_bits()), BigInt::from(v.y.to_bits()));
     let across: BigInt = (&y * &cos - &x * &sin).abs();
     assert!((&x * &cos + &y * &sin).is_positive(), "{v:?} points away from {angle:?}");
-    // sin(error) |v| = across. The sine of such a small angle equals the angle.
+    // sin(error) |v| = across, and the sine of such a small angle equals the angle.
     let length = exact::root(&((x.pow(2) + y.pow(2)) << 128));
     let unit: BigInt = (&*PI * 2) >> 32;
     assert!((across << 64) * 1000 <= unit * length * 701, "{v:?}: {angle:?}");
@@ -100,7 +100,7 @@ fn rotations(source: &mut Source<'_>, angle: Angle) {
     let found = rotation.apply(Vec2::new(Length::from_bits(a), Length::from_bits(b)));
     let exact = cos * fixed(a, 22) - sin * fixed(b, 22);
     assert_eq!(BigInt::from(found.x.to_bits()), saturated(halves_up(&exact, 22), 32), "{a} {b} {angle:?}");
-    // Composing two rotations equals rotating by the sum, within the rounding errors of both and of the product.
+    // Composing rotations equals rotating by the sum, within rounding.
     let other = Angle::from_bits(source.word() as u32);
     let (both, sum) = (rotation.then(Rot::from_angle(other)), Rot::from_angle(angle + other));
     let off = |a: Unit, b: Unit| (i64::from(a.to_bits()) - i64::from(b.to_bits())).abs();

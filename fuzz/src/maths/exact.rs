@@ -1,4 +1,4 @@
-//! Exact arithmetic, as the slow reference for fixed-point results.
+//! Exact arithmetic.
 
 use std::sync::LazyLock;
 
@@ -7,25 +7,20 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-/// A fraction of big integers.
 pub(crate) type Exact = BigRational;
 
-/// Converts an integer.
 pub(crate) fn integer(value: impl Into<BigInt>) -> Exact {
     Exact::from_integer(value.into())
 }
 
-/// Returns `bits / 2^fraction_bits`.
 pub(crate) fn fixed(bits: impl Into<BigInt>, fraction_bits: u32) -> Exact {
     Exact::new(bits.into(), BigInt::one() << fraction_bits)
 }
 
-/// The exact value of a world quantity.
 pub(crate) fn of(value: Fx) -> Exact {
     fixed(value.to_bits(), 32)
 }
 
-/// A fraction of two small numbers.
 pub(crate) fn ratio(numerator: i64, denominator: i64) -> Exact {
     Exact::new(numerator.into(), denominator.into())
 }
@@ -41,7 +36,6 @@ pub(crate) fn halves_away(value: &Exact, fraction_bits: u32) -> BigInt {
     if value.is_negative() { -magnitude } else { magnitude }
 }
 
-/// Clamps a number to the range of a signed integer of `bits` bits.
 pub(crate) fn saturated(value: BigInt, bits: u32) -> BigInt {
     let end: BigInt = BigInt::one() << (bits - 1);
     value.clamp(-end.clone(), end - 1)
@@ -73,7 +67,7 @@ fn arc_tangent_of_inverse(n: i64) -> BigInt {
 
 /// Sine and cosine of `bits / 2^32` turns.
 pub(crate) fn sin_cos(bits: u32) -> (BigInt, BigInt) {
-    // Reduces the angle to at most an eighth of a turn from a multiple of a quarter turn, where the series is short.
+    // Reduces the angle to at most an eighth of a turn, where the series is short.
     let quarter = bits.wrapping_add(1 << 29) >> 30;
     let rest = i64::from(bits.wrapping_sub(quarter << 30) as i32);
     let angle: BigInt = (&*PI * rest) >> 31;
@@ -94,7 +88,7 @@ fn series(x: &BigInt, first: i64) -> BigInt {
         sum += &term;
         term = -(((&term * x) >> PRECISION) * x >> PRECISION) / ((n + 1) * (n + 2));
         n += 2;
-        // Shifts round down, so a negative term would never become zero.
+        // Shifts round down: a negative term would never become zero.
         if term == -BigInt::one() {
             break;
         }

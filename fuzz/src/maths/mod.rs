@@ -1,5 +1,4 @@
-//! Checks the operations of `lockstep2d::math` against exact fractions: rounded as documented, within the documented
-//! error, saturated at the limits.
+//! Checks `lockstep2d::math` against exact fractions.
 
 pub(crate) mod exact;
 
@@ -14,7 +13,7 @@ use lockstep2d::math::{Fx, Vec2};
 /// Tries operations until the bytes end. Returns their number.
 ///
 /// # Panics
-/// When a result is not the documented one.
+/// When a result is not within the documented error, or not saturated.
 pub fn run(bytes: &[u8]) -> u64 {
     let mut source = Source::new(bytes);
     let mut tried = 0;
@@ -30,7 +29,7 @@ pub fn run(bytes: &[u8]) -> u64 {
     tried
 }
 
-/// Any number: near a limit, ordinary, or with few bits.
+/// A number near a limit, ordinary, or with few bits.
 fn number(source: &mut Source<'_>) -> Fx {
     match source.below(3) {
         0 => source.edge(),

@@ -1,4 +1,4 @@
-//! Geometry in the plane, compared with exact fractions.
+//! Geometry in the plane.
 
 use lockstep2d::math::{
     Fx, Orientation, Vec2, closest_point_on_segment, orientation, point_in_polygon, segment_intersection,
@@ -17,7 +17,7 @@ pub(super) fn check(source: &mut Source<'_>) {
         if !crowded {
             return vector(source);
         }
-        // Few coordinates, so that many points are collinear.
+        // Few coordinates make many points collinear.
         let few = [Fx::ZERO, Fx::ONE, Fx::DELTA, -Fx::ONE, Fx::MAX, Fx::MIN];
         Vec2::new(source.pick(&few), source.pick(&few))
     };
@@ -56,7 +56,7 @@ fn dot(a: &Point, b: &Point, c: &Point) -> Exact {
     (&b[0] - &a[0]) * (&c[0] - &a[0]) + (&b[1] - &a[1]) * (&c[1] - &a[1])
 }
 
-/// Checks that a point is rounded to nearest: within half a unit of the exact point.
+/// Checks that a point is rounded to nearest.
 fn assert_near(found: Vec2<Fx>, at: &Point, what: &dyn Fn() -> String) {
     let half = fixed(1, 33);
     for (found, exact) in [found.x, found.y].into_iter().zip(at) {
@@ -64,7 +64,6 @@ fn assert_near(found: Vec2<Fx>, at: &Point, what: &dyn Fn() -> String) {
     }
 }
 
-/// Returns `a + (b - a) t`.
 fn along(a: &Point, b: &Point, t: &Exact) -> Point {
     [&a[0] + (&b[0] - &a[0]) * t, &a[1] + (&b[1] - &a[1]) * t]
 }
@@ -87,7 +86,7 @@ fn crossing(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) {
     assert_eq!(found.is_some(), reversed.is_some(), "{}", what());
     let determinant = &sides[0] - &sides[1];
     if determinant.is_zero() {
-        // Parallel segments intersect only if an end point of one lies on the other.
+        // Parallel segments intersect if an end point of one lies on the other.
         let ends = [(&c, &a, &b), (&d, &a, &b), (&a, &c, &d), (&b, &c, &d)];
         let shared = ends.iter().any(|(p, from, to)| on_segment(p, from, to));
         return assert_eq!(found.is_some(), shared, "{}", what());

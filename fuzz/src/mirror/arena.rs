@@ -38,7 +38,6 @@ impl<T> Arena<T> {
         self.slots.iter_mut().filter_map(|slot| slot.value.as_mut())
     }
 
-    /// Adds a value in a new slot.
     pub(super) fn add(&mut self, value: T) -> Handle {
         self.slots.push(Slot { generation: 0, value: Some(value) });
         self.handle(self.slots.len() - 1)
@@ -57,7 +56,7 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Changes the order of vacant slots, or adds a vacant slot or one whose generations are used up.
+    /// Reorders vacant slots, or adds one, possibly with its generations used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

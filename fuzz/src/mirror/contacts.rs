@@ -12,7 +12,6 @@ struct Point {
     tangent: i32,
 }
 
-/// A vector in world axes.
 type Vector = [i32; 2];
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,11 +26,10 @@ struct KeptManifold {
 }
 
 impl KeptManifold {
-    /// Normals. The world accepts zero and unit vectors, and refuses the last two, whose length is not 1.
+    /// The world accepts zero and unit vectors, and refuses the last two.
     const NORMALS: [Vector; 6] =
         [[0, 0], [0, 1 << 30], [-(1 << 30), 0], [759_250_125, 759_250_125], [1 << 30, 1 << 30], [i32::MIN, 1]];
 
-    /// Changes some numbers.
     fn alter(&mut self, source: &mut Source<'_>) {
         if source.one_in(2) {
             self.normal = source.pick(&Self::NORMALS);
@@ -49,7 +47,7 @@ impl KeptManifold {
         }
     }
 
-    /// Zeroes the data of the points that a contact of `count` points lacks.
+    /// Zeroes the points beyond `count`.
     fn cut(&mut self, count: u8) {
         match count {
             0 => *self = KeptManifold::default(),
@@ -129,7 +127,7 @@ impl State {
         Some(())
     }
 
-    /// Moves a contact from the active to the sleeping contacts, or back, so that its place is wrong.
+    /// Moves a contact between the active and the sleeping contacts, where its place is wrong.
     fn alter_sleeping_contacts(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
             true => (&mut self.contacts, &mut self.sleeping_contacts),

@@ -12,7 +12,6 @@ pub(super) struct Island {
 }
 
 impl State {
-    /// Puts a body to sleep, wakes an island, or changes the membership of islands.
     pub(super) fn alter_sleep(&mut self, source: &mut Source<'_>) -> Option<()> {
         match source.below(5) {
             0 | 1 => {

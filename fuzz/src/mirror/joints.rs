@@ -22,7 +22,6 @@ fn body_id((slot, generation): Handle) -> BodyId {
 }
 
 impl Joint {
-    /// Replaces a body's handle.
     pub(super) fn rename(&mut self, old: Handle, new: Handle) {
         for end in [&mut self.def.body_a, &mut self.def.body_b] {
             if *end == body_id(old) {
@@ -44,7 +43,7 @@ impl State {
         let joint = self.joints.get(index)?;
         match source.below(9) {
             0 | 1 => joint.impulses = [0; 6].map(|_: i32| speed(source, IMPULSE_MAX)),
-            // In one of eight cases the anchor may be beyond the limit for a moving body.
+            // One in eight anchors may be beyond the limit for a moving body.
             2 => {
                 let reach = if source.one_in(8) { 1 << 62 } else { REACH_MAX };
                 joint.def.frame_a.anchor = vector(pair(source, -reach, reach));

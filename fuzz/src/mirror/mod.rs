@@ -1,5 +1,4 @@
-//! A copy of the layout of a world's state in `docs/FORMAT.md`, with all fields accessible, to change single fields of
-//! a snapshot and leave the rest valid.
+//! The layout of a world's state in `docs/FORMAT.md`, to change single fields of a snapshot.
 
 mod arena;
 mod bodies;
@@ -79,14 +78,13 @@ impl State {
         mirror
     }
 
-    /// Encodes the state, without header and hash.
+    /// Encodes the state without header and hash.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         codec::encode(self)
     }
 
-    /// Makes a change that is often valid. Nothing is changed if the drawn change is impossible, for example because
-    /// there is no joint, or because a body's mass cannot be computed from its shapes.
+    /// Makes a change that is often valid, or none if the drawn change is impossible.
     pub fn alter(&mut self, source: &mut Source<'_>) {
         let before = self.clone();
         if self.try_alter(source).is_none() {
@@ -160,7 +158,6 @@ impl State {
         }
     }
 
-    /// Changes the generation of a slot and of all handles that refer to it.
     fn alter_generation(&mut self, source: &mut Source<'_>) -> Option<()> {
         let generation = source.within(0, u32::MAX.into()) as u32;
         match source.below(4) {

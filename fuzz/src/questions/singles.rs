@@ -28,8 +28,7 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Compares queries of a single shape of the world, and of a probe that belongs to no world, with queries of the
-    /// world.
+    /// Compares queries of a single shape with queries of the world.
     pub(super) fn singles(&self, source: &mut Source<'_>) -> bool {
         let Some(loose) = self.probe(source) else { return false };
         let nth = source.below(self.world.shape_count());

@@ -1,4 +1,4 @@
-//! Characters: shapes that a game moves by its own rules instead of forces.
+//! Characters, moved by the game's own rules.
 
 use lockstep2d::world::World;
 
@@ -9,8 +9,8 @@ use crate::records::{RawMover, RawMoverPlane, RawMoverState, RawQueryFilter};
 use crate::table::with;
 
 api! {
-    /// Sets the defaults of a character with a shape of the given kind, whose geometry has to be set. The character
-    /// stands on slopes up to 45 degrees, climbs no steps, and follows ground that falls by up to 0.1 m in a tick.
+    /// Sets the defaults of a character with a shape of the given kind, whose geometry has to be set: slopes up to 45
+    /// degrees, no steps, and ground that falls by up to 0.1 m in a tick.
     fn ls2d_mover_init(kind: u32, mover: Out<'_, RawMover>) {
         let mut mover = mover;
         mover.set(RawMover::of_kind(kind))
@@ -22,10 +22,9 @@ api! {
         state.set(RawMoverState::at(RawVec2 { x, y }.vec()))
     }
 
-    /// Moves a character for one tick at its velocity, among the shapes that a filter accepts. It slides along surfaces
-    /// that it meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change.
-    /// `from` and `state` may point to the same struct. The surfaces that it has met are written to `met` in order; if
-    /// the buffer is too short, the state is written nevertheless.
+    /// Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
+    /// the velocity. `from` and `state` may point to the same struct. The surfaces met are written to `met` in order.
+    /// If that buffer is too short, the state is written nevertheless.
     fn ls2d_move_character(
         world: u32,
         mover: In<'_, RawMover>,

@@ -1,4 +1,4 @@
-//! Definitions of bodies, shapes and joints, before they are added to a world.
+//! Definitions of bodies, shapes and joints.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, MassProperties, ShapeDef};
 use lockstep2d::math::{Fx, Vec2};
@@ -40,8 +40,8 @@ api! {
         def.set(RawJointDef::of_kind(kind)?)
     }
 
-    /// Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
-    /// `one_sided` is not 0. The links have all properties of `base` except its geometry.
+    /// Makes the links of a chain through some points: closed if `closed` is not 0, solid from the right only if
+    /// `one_sided` is not 0. The other properties are those of `base`.
     fn ls2d_chain_links(
         base: In<'_, RawShapeDef>,
         points: In<'_, RawVec2>,
@@ -74,9 +74,8 @@ api! {
         links.set_all(capacity, &mut count, &made)
     }
 
-    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
-    /// `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has both an area
-    /// and a density.
+    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, as in a definition. Null
+    /// pointers are not written. At least one shape must have both an area and a density.
     fn ls2d_shapes_mass(
         shapes: In<'_, RawShapeDef>,
         shape_count: usize,

@@ -1,4 +1,4 @@
-//! Floats for drawing. They are results only: nothing that enters a world is a float.
+//! Floats for drawing, which never enter a world.
 #![expect(
     clippy::disallowed_types,
     clippy::float_arithmetic,
@@ -24,13 +24,12 @@ impl CType for f64 {
 /// Resolution of the numbers of a world: 2^-32.
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
-/// Converts a number of a world to the nearest float.
 #[expect(clippy::cast_precision_loss, reason = "rounded to nearest, for drawing")]
 fn float(value: Fx) -> f64 {
     value.to_bits() as f64 * UNIT
 }
 
-/// A body's handle as a float, which is exact because a handle has at most 53 bits.
+/// Exact, because a handle has at most 53 bits.
 #[expect(clippy::cast_precision_loss, reason = "at most 53 bits")]
 fn number(id: RawBody) -> f64 {
     id.0 as f64
@@ -44,8 +43,8 @@ fn row(id: RawBody, body: &Body) -> [f64; 5] {
 }
 
 api! {
-    /// Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle
-    /// in rad, and 1 if it is awake, otherwise 0. `capacity` and `count` are numbers of `double`s.
+    /// Poses of all enabled bodies in slot order, for drawing, five numbers each: handle, x, y, angle in rad, and 1 if
+    /// awake, otherwise 0. `capacity` and `count` are numbers of `double`s.
     fn ls2d_draw_poses(world: u32, rows: Out<'_, f64>, capacity: usize, count: Out<'_, usize>) {
         let (mut rows, mut count) = (rows, count);
         with(world, |world: &mut World| {

@@ -1,4 +1,4 @@
-//! Edits: each is a command that is executed by a world at once, or added to a list.
+//! Edits: commands, executed by a world at once or added to a list.
 
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Vec2};
@@ -14,7 +14,7 @@ use crate::records::{
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
 
-/// Executes a command, if the target is a world, or adds it to a list of commands. Nothing is returned for a list.
+/// Executes a command, or adds it to a list and returns `None`.
 fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
     with_any(target, |object| match object {
         Object::World(world) => Ok(Some(world.execute(&command)?)),
@@ -26,7 +26,7 @@ fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
     })
 }
 
-/// Checks, before anything is added, that all handles can be written.
+/// Checks that all handles can be written, before anything is added.
 fn check_room<T: Plain>(ids: &Out<'_, T>, capacity: usize, needed: usize) -> Outcome {
     if ids.is_null() {
         return Ok(());
@@ -38,13 +38,11 @@ fn check_room<T: Plain>(ids: &Out<'_, T>, capacity: usize, needed: usize) -> Out
     Err(Failure::new(Status::Buffer, format!("a buffer of {capacity} items, {needed} are needed")))
 }
 
-/// Writes handles, unless the pointer is null.
 fn set_ids<T: Plain>(mut ids: Out<'_, T>, capacity: usize, made: Vec<T>) -> Outcome {
     let mut count = 0;
     if ids.is_null() { Ok(()) } else { ids.set_all(capacity, &mut Out::of(&mut count), &made) }
 }
 
-/// Executes a command whose only parameter is a body.
 macro_rules! body_commands {
     ($target:ident, $body:ident, $command:ident) => {
         edit($target, Command::$command { body: $body.id()? }).map(|_| ())
@@ -73,7 +71,7 @@ api! {
         with(commands, |Commands(list)| count.set(list.len()))
     }
 
-    /// Encodes a list of commands as bytes, for networks and files.
+    /// Encodes a list of commands as bytes.
     fn ls2d_commands_encode(commands: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
@@ -81,7 +79,7 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Replaces a list of commands by an encoded one, from any source.
+    /// Replaces a list of commands by an encoded one, which may come from any source.
     fn ls2d_commands_decode(commands: u32, data: In<'_, u8>, size: usize) {
         let decoded: Vec<Command> = codec::decode(data.slice(size)?)?;
         with(commands, |Commands(list)| {
@@ -90,8 +88,8 @@ api! {
         })
     }
 
-    /// Executes a list of commands in order. Commands that the world refuses are skipped; their number is written to
-    /// `refused` unless it is null.
+    /// Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`
+    /// unless it is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
         with_two(world, commands, |world: &mut World, Commands(list)| {
@@ -116,9 +114,9 @@ api! {
         }
     }
 
-    /// Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
-    /// definition once. Bodies and flags of the poses are not read. The handles are written, unless the pointer is null
-    /// or the target is a list.
+    /// Adds a body with one definition at each pose, or none if one is refused. A recording stores the definition once.
+    /// Bodies and flags of the poses are not read. The handles are written, unless the pointer is null or the target is
+    /// a list.
     fn ls2d_spawn_each(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -171,9 +169,9 @@ api! {
         }
     }
 
-    /// Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A
-    /// recording stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles
-    /// are written, unless the pointer is null or the target is a list.
+    /// Adds a joint with one definition between each pair of bodies, or none if one is refused. A recording stores the
+    /// definition once. `ends` has the two bodies of each joint in turn. The handles are written, unless the pointer is
+    /// null or the target is a list.
     fn ls2d_add_joint_each(
         target: u32,
         joint: In<'_, RawJointDef>,
@@ -186,7 +184,7 @@ api! {
         let (pairs, []) = ends.slice(end_count)?.as_chunks() else {
             return Err(value("the number of ends of joints", end_count));
         };
-        // The bodies of the definition have no effect, and may still be `LS2D_NO_ID`, which `ls2d_joint_def_init` sets.
+        // The bodies of the definition have no effect, and may be `LS2D_NO_ID`.
         let [body_a, body_b] = pairs.first().copied().unwrap_or([RawBody(0); 2]);
         let joint = RawJointDef { body_a, body_b, ..joint.get()? }.def()?;
         let pair = |&[a, b]: &[RawBody; 2]| Ok((a.id()?, b.id()?));
@@ -204,7 +202,7 @@ api! {
         edit(target, Command::RemoveJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Changes a joint. Its bodies have to stay the same.
+    /// Changes a joint, but not its bodies.
     fn ls2d_set_joint(target: u32, joint: RawJoint, def: In<'_, RawJointDef>) {
         edit(target, Command::SetJoint { joint: joint.id()?, def: def.get()?.def()? }).map(|_| ())
     }
@@ -214,7 +212,7 @@ api! {
         edit(target, Command::EnableJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Disables a joint: it stays in the world without effect.
+    /// Disables a joint, which stays in the world.
     fn ls2d_disable_joint(target: u32, joint: RawJoint) {
         edit(target, Command::DisableJoint { joint: joint.id()? }).map(|_| ())
     }
@@ -230,13 +228,13 @@ api! {
         edit(target, Command::ApplyTorque { body: body.id()?, torque: torque.fx() }).map(|_| ())
     }
 
-    /// Changes the velocity of a body by an impulse in N s at a point of the world, in metres.
+    /// Applies an impulse in N s to a body at a point of the world in metres.
     fn ls2d_apply_impulse(target: u32, body: RawBody, impulse_x: RawFx, impulse_y: RawFx, x: RawFx, y: RawFx) {
         let (impulse, point) = (vector(impulse_x, impulse_y), vector(x, y));
         edit(target, Command::ApplyImpulse { body: body.id()?, impulse, point }).map(|_| ())
     }
 
-    /// Changes the angular velocity of a body by an angular impulse in N m s.
+    /// Applies an angular impulse in N m s to a body.
     fn ls2d_apply_angular_impulse(target: u32, body: RawBody, impulse: RawFx) {
         edit(target, Command::ApplyAngularImpulse { body: body.id()?, impulse: impulse.fx() }).map(|_| ())
     }
@@ -253,14 +251,13 @@ api! {
         edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Gives a kinematic body the velocity with which it reaches a pose in the next tick.
+    /// Moves a kinematic body to a pose during the next tick.
     fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
     }
 
     /// Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
-    /// `ls2d_body_get` returns the current settings.
     fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }
@@ -282,7 +279,7 @@ api! {
         edit(target, Command::SetUserData { body: body.id()?, user_data }).map(|_| ())
     }
 
-    /// Sets the name of a body, of at most 16 bytes. A length of 0 removes the name.
+    /// Sets the name of a body. A length of 0 removes it.
     fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
         let name = name_of(text.text(length)?.as_bytes())?;
         edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())
@@ -297,7 +294,7 @@ api! {
     /// Wakes a body.
     fn ls2d_wake(target: u32, body: RawBody) { body_commands!(target, body, Wake) }
 
-    /// Puts a dynamic body to sleep, with all dynamic bodies that contacts and joints connect it to.
+    /// Puts a dynamic body to sleep, with the dynamic bodies that contacts and joints connect it to.
     fn ls2d_sleep(target: u32, body: RawBody) { body_commands!(target, body, Sleep) }
 
     /// Sets the gravity in m/s².
@@ -305,7 +302,7 @@ api! {
         edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
     }
 
-    /// Changes the settings of the world. Its limits have to stay the same.
+    /// Changes the settings of a world, but not its limits.
     fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
         edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
     }

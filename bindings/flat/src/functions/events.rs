@@ -1,4 +1,4 @@
-//! Events of the last tick: one function for each list.
+//! Events of the last tick.
 
 use lockstep2d::world::World;
 
@@ -8,7 +8,6 @@ use crate::records::{RawContactEvent, RawHitEvent, RawJointEvent, RawPose, RawSe
 use crate::status::Outcome;
 use crate::table::with;
 
-/// Copies a list of the events.
 fn copy<E: 'static, T: crate::border::Plain>(
     world: u32,
     list: impl FnOnce(&World) -> &[E],
@@ -49,8 +48,8 @@ api! {
         copy(world, |world| &world.events().contact_end, RawContactEvent::of, events, capacity, count)
     }
 
-    /// Pairs of shapes that hit each other, sorted by shape A, then by shape B. A pair reports hits if at least one of
-    /// its shapes has `LS2D_SHAPE_HIT_EVENTS`.
+    /// Pairs of shapes that hit each other, sorted by shape A, then by shape B, if one of them has
+    /// `LS2D_SHAPE_HIT_EVENTS`.
     fn ls2d_events_hits(world: u32, events: Out<'_, RawHitEvent>, capacity: usize, count: Out<'_, usize>) {
         copy(world, |world| &world.events().hits, RawHitEvent::of, events, capacity, count)
     }

@@ -1,5 +1,4 @@
-//! Recorders for games whose rules are written in another language: the host, the program that calls this library,
-//! simulates the game, and the library writes the replay.
+//! Recorders for games whose rules are written in another language: the calling program, the host, simulates the game.
 //!
 //! A checkpoint is a hash of the host's state hash and of all inputs so far.
 
@@ -14,11 +13,10 @@ use crate::numbers::RawHash;
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, with};
 
-/// Setup of a host's game: name and version of the rules, players, tick rate, bytes of an input, hash of the first
-/// state, the game's own setup.
+/// Rules (name, version), players, tick rate, bytes of an input, hash of the first state, the game's own setup.
 pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
 
-/// Players, tick rate, state hash and claims of a game that the host plays, for its recorder.
+/// A game that the host plays, for its recorder.
 pub(super) struct HostGame {
     players: u32,
     tick_rate: u32,
@@ -70,7 +68,7 @@ impl Game for HostGame {
     }
 }
 
-/// A recorder of a host's game. `recorder` is `None` once it is finished.
+/// A recorder of a host's game; `None` once it is finished.
 pub(crate) struct HostRecorder {
     recorder: Option<Recorder<HostGame>>,
     game: HostGame,
@@ -82,8 +80,7 @@ impl HostRecorder {
         self.recorder.as_mut().ok_or_else(finished)
     }
 
-    /// Splits `bytes` into the inputs of all players. The file stores no bytes for an absent player: its input is
-    /// empty.
+    /// Splits `bytes` into the inputs of all players. The input of an absent player is empty.
     fn inputs(&self, bytes: &[u8], absent: u64) -> Outcome<Vec<Vec<u8>>> {
         let players = usize::try_from(self.game.players).unwrap_or(usize::MAX);
         let expected = players.saturating_mul(self.input_bytes);
@@ -103,12 +100,12 @@ impl HostRecorder {
     }
 }
 
-/// Whether a game can have this number of players and inputs of this number of bytes.
+/// Whether players and bytes of an input are in range.
 pub(super) fn are_possible(players: u32, input_bytes: u32) -> bool {
     (1..=64).contains(&players) && (1..=512).contains(&input_bytes)
 }
 
-/// Adds a claim, a named result of a game.
+/// Adds a named result of a game.
 pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) -> Outcome {
     let length = u32::try_from(name.len()).unwrap_or(u32::MAX);
     if !(1..=CLAIM_NAME_BYTES_MAX).contains(&length) {
@@ -125,9 +122,8 @@ pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) ->
 }
 
 api! {
-    /// Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` the data
-    /// from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
-    /// `interval` ticks.
+    /// Starts a recorder for a game with its own rules. `rules` is their name in UTF-8, `setup` the data from which the
+    /// game makes its first state, and `start` the hash of that state. There is a checkpoint every `interval` ticks.
     fn ls2d_recorder_new(
         rules: In<'_, u8>,
         rules_length: usize,
@@ -155,9 +151,9 @@ api! {
         recorder.set(table::add(HostRecorder { recorder: Some(started), game, input_bytes })?)
     }
 
-    /// Records the final inputs of the next tick: the inputs of all players, one after another. `absent` has a bit for
-    /// each absent player; its input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
-    /// with the hash of the state after this tick.
+    /// Records the final inputs of the next tick, all players in order. `absent` has a bit for each absent player,
+    /// whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash after
+    /// this tick.
     fn ls2d_recorder_record(
         recorder: u32,
         inputs: In<'_, u8>,
@@ -183,7 +179,7 @@ api! {
         })
     }
 
-    /// Takes the bytes that are finished, to be appended to the file.
+    /// Takes the finished bytes, to be appended to the file.
     fn ls2d_recorder_take(recorder: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
@@ -191,9 +187,8 @@ api! {
         bytes.set(table::add(Bytes(taken))?)
     }
 
-    /// Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
-    /// and a number. A replay has at most 256 results with different names. They can be read without playing the
-    /// replay.
+    /// Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
+    /// 256 results with different names, which can be read without playing it.
     fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(recorder, |recorder: &mut HostRecorder| {
@@ -202,7 +197,7 @@ api! {
         })
     }
 
-    /// Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet.
+    /// Ends a replay with the hash of the last state, and returns the remaining bytes.
     fn ls2d_recorder_finish(recorder: u32, hash: In<'_, RawHash>, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;

@@ -1,5 +1,4 @@
-//! Replays of games whose rules are written in another language: the host simulates the inputs of a file and passes its
-//! state hashes.
+//! Replays of games whose rules are written in another language: the host simulates the game and passes state hashes.
 
 use std::collections::BTreeSet;
 
@@ -17,24 +16,23 @@ use crate::records::{RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, with};
 
-/// Largest number of intervals between saved states, unless the caller sets the interval.
+/// Largest number of default intervals between saved states in a replay.
 const SAVES: u64 = 256;
-/// Smallest number of ticks between saved states, unless the caller sets the interval.
+/// Smallest default interval between saved states, in ticks.
 const SAVE_INTERVAL: u64 = 60;
 
-/// Ticks with the same inputs.
+/// Consecutive ticks with equal inputs.
 pub(super) struct Run {
-    /// The first tick.
     start: u64,
-    /// Inputs of the players that are present, one after another.
+    /// Inputs of the players that are present.
     inputs: Vec<u8>,
     /// Bit for each seat that nobody plays.
     pub(super) absent: u64,
 }
 
 impl Run {
-    /// Returns the inputs of all players, zeros for absent players. A run stores only the inputs of present players:
-    /// with the zeros, a file without players could take 64 times its size in memory.
+    /// Inputs of all players, zeros for absent ones. A run does not store these zeros, so that a file without players
+    /// does not take many times its size in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];
@@ -57,18 +55,16 @@ pub(crate) struct HostReplay {
     checkpoints: Vec<Checkpoint>,
     trailer: Option<Trailer>,
     pub(super) ticks: u64,
-    /// Current tick: the game is in the state after this number of ticks.
+    /// Number of ticks that led to the current state.
     pub(super) tick: u64,
-    /// Tick of the last comparison with a checkpoint; `None` before the first, and after a saved state was loaded.
+    /// Tick of the last comparison; `None` before the first one and after loading a state.
     pub(super) compared: Option<u64>,
-    /// Number of checkpoints, counted from the start, that have been compared and are equal.
+    /// Number of checkpoints from the start that are equal.
     equal: usize,
     pub(super) failed: Option<Verdict>,
-    /// Claims of the game as the host has played it.
+    /// Claims that the host has added.
     claims: Vec<(String, i64)>,
-    /// The tick to go to.
     pub(super) target: u64,
-    /// Ticks of the states that the game has saved.
     pub(super) saved: BTreeSet<u64>,
     pub(super) interval: u64,
 }
@@ -116,30 +112,27 @@ impl HostReplay {
         })
     }
 
-    /// The run of the next tick; `None` at the end.
     pub(super) fn run(&self) -> Option<&Run> {
         let after = self.runs.partition_point(|run| run.start <= self.tick);
         self.runs.get(after.checked_sub(1)?).filter(|_| self.tick < self.ticks)
     }
 
-    /// Inputs of all players for the next tick; none at the end.
     pub(super) fn inputs(&self) -> Vec<u8> {
         let (players, input_bytes) = (self.setup.2, usize::try_from(self.setup.4).unwrap_or(usize::MAX));
         self.run().map_or_else(Vec::new, |run| run.inputs_of_all(players, input_bytes))
     }
 
-    /// Index of the checkpoint at the current tick.
     pub(super) fn checkpoint(&self) -> Option<usize> {
         self.checkpoints.binary_search_by_key(&self.tick, |checkpoint| checkpoint.tick).ok()
     }
 
-    /// Compares the state after the ticks so far with the checkpoint at the current tick, if there is one.
+    /// Compares the state with the checkpoint at the current tick, if there is one.
     fn check(&mut self, hash: StateHash) -> Outcome {
         let Some(index) = self.checkpoint() else { return Ok(()) };
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
         self.compared = Some(tick);
         if checkpoint_hash(hash, inputs) == stored {
-            // Counts consecutive checkpoints only: a checkpoint that was skipped has not been compared.
+            // A skipped checkpoint has not been compared.
             self.equal += usize::from(index == self.equal);
             return Ok(());
         }
@@ -153,7 +146,7 @@ impl HostReplay {
         Ok(())
     }
 
-    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state.
+    /// The verdict after the last tick or after a difference.
     fn verdict(&mut self, hash: StateHash) -> Outcome<Verdict> {
         self.check(hash)?;
         if let Some(failed) = &self.failed {
@@ -195,8 +188,7 @@ fn read_setup(reader: &Reader<'_>) -> Result<HostSetup, Verdict> {
     setup.ok_or(Verdict::Malformed { offset: 0, flaw: Flaw::Setup })
 }
 
-/// Decodes the inputs of a run: a list of bytes for each player, which is empty for an absent player. Returns the
-/// inputs of the present players one after another, and a bit for each absent player.
+/// Decodes a run: the inputs of the present players, and a bit for each absent player, whose list of bytes is empty.
 fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
     let (players, input_bytes) = (setup.2, usize::try_from(setup.4).ok()?);
     let mut list = u64::from(players).to_le_bytes().to_vec();
@@ -209,7 +201,7 @@ fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
 }
 
 api! {
-    /// Opens a replay of a game with rules of its own, from any source. If it cannot be played, its verdict is written,
+    /// Opens a replay of a game with its own rules, from any source. If it cannot be played, its verdict is written,
     /// the handle is 0, and the result is `LS2D_RECORD`.
     fn ls2d_replay_open(
         data: In<'_, u8>,
@@ -224,7 +216,7 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as bytes, and the figures of the replay. Null pointers to figures are not written.
+    /// Name of the rules as bytes, and figures of the replay. Null pointers to figures are not written.
     fn ls2d_replay_rules(
         replay: u32,
         rules: Out<'_, u32>,
@@ -255,8 +247,8 @@ api! {
         bytes.set(table::add(Bytes(setup))?)
     }
 
-    /// Name, as bytes, and number of a result that the file states. Results are in ascending order of names. They are
-    /// true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
+    /// Name, as bytes, and number of a result that the file states, in ascending order of names. The results are true
+    /// if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
     fn ls2d_replay_claim_at(replay: u32, index: u32, name: Out<'_, u32>, number: Out<'_, i64>) {
         let (mut name, mut number) = (name, number);
         name.check()?;
@@ -270,8 +262,8 @@ api! {
         name.set(table::add(Bytes(found))?)
     }
 
-    /// The inputs of all players for the next tick, `players` times `input_bytes` bytes. A bit for each absent player
-    /// is written to `absent` unless it is null. `LS2D_NONE` at the end.
+    /// The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
+    /// `LS2D_NONE` at the end.
     fn ls2d_replay_next(
         replay: u32,
         inputs: Out<'_, u8>,
@@ -297,13 +289,13 @@ api! {
         with(replay, |replay: &mut HostReplay| replay.check(hash))
     }
 
-    /// Adds a result of the game that was played. The verdict compares all added results with those in the file.
+    /// Adds a result of the game that was played, to be compared with those in the file by the verdict.
     fn ls2d_replay_claim(replay: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(replay, |replay: &mut HostReplay| claim(&mut replay.claims, name, number))
     }
 
-    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state.
+    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state.
     fn ls2d_replay_verdict(replay: u32, hash: In<'_, RawHash>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;
         let hash = hash.get()?.hash();

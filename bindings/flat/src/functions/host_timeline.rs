@@ -1,5 +1,4 @@
-//! Seeking in replays of games whose rules are written in another language: the host fulfils requests, as in a match.
-//! It saves, restores and advances its state, and passes its state hash at the checkpoints.
+//! Seeking in replays of games whose rules are written in another language. The host fulfils requests, as in a match.
 
 use super::host_replay::HostReplay;
 use crate::border::Out;
@@ -9,7 +8,6 @@ use crate::status::{Failure, Outcome, Status, value};
 use crate::table::with;
 
 impl HostReplay {
-    /// The next request on the way to the target.
     fn request(&self) -> Outcome<RawRequest> {
         if let Some(failed) = &self.failed
             && self.target >= failed.ticks()
@@ -21,7 +19,7 @@ impl HostReplay {
             let failure = || value("the tick to go to, without a saved state before it,", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A step forwards by one tick is played, not loaded, so that the game can show the events of this tick.
+        // A step forwards by one tick is played, so that the game can show its events.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -37,7 +35,7 @@ impl HostReplay {
         request(kind, self.tick, self.run().map_or(0, |run| run.absent))
     }
 
-    /// Updates the position after a request was passed to the game. A checksum is requested until it is answered.
+    /// Updates the position. A checksum is requested until it is answered.
     fn fulfil(&mut self, request: RawRequest) {
         match request.kind {
             REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
@@ -55,8 +53,8 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 }
 
 api! {
-    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
-    /// that the game has to fulfil. At the first request the game has to be in its first state.
+    /// Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
+    /// returns requests. At the first one the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {
@@ -68,10 +66,9 @@ api! {
         })
     }
 
-    /// The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
-    /// match, and `LS2D_REQUEST_CHECKSUM`, which `ls2d_replay_check` answers with the hash of the current state.
-    /// `LS2D_NONE` when the tick is reached. `LS2D_RECORD` if the game has diverged from the file: only earlier ticks
-    /// can be reached.
+    /// The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
+    /// `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
+    /// `LS2D_RECORD` if the game has diverged from the file before that tick.
     fn ls2d_replay_next_request(
         replay: u32,
         request: Out<'_, RawRequest>,
@@ -90,8 +87,8 @@ api! {
         })
     }
 
-    /// Sets the interval in ticks at which seeking requests to save the state. The default is 60, or a 256th of the
-    /// replay's ticks if that is more.
+    /// Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
+    /// is more.
     fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
         with(replay, |replay: &mut HostReplay| {
             if ticks == 0 {

@@ -1,4 +1,4 @@
-//! Versions, errors, memory, bytes, and handles of all kinds.
+//! Versions, errors, memory, bytes, and handles.
 
 use std::cell::RefCell;
 
@@ -15,14 +15,14 @@ thread_local! {
 }
 
 api! {
-    /// Version of this API. It has to be equal to `LS2D_API_VERSION` of the header.
+    /// Version of this API, to be equal to `LS2D_API_VERSION` of the header.
     fn ls2d_api_version() -> u32 { API_VERSION }
 
     /// Version of the engine's arithmetic: programs with different versions compute different states.
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
-    /// Copies the text of the last failure or verdict on this thread as UTF-8, and writes its length in bytes. The text
-    /// is not terminated by a zero. If the buffer is shorter, the text is cut.
+    /// Copies the text of the last failure or verdict on this thread as UTF-8 without a final zero, cut to the buffer.
+    /// Writes the length of the whole text in bytes.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();
@@ -31,7 +31,7 @@ api! {
         length.set(text.len())
     }
 
-    /// Frees an object of any kind. Afterwards every use of its handle is an error, including freeing it again.
+    /// Frees an object of any kind. Every later use of its handle is an error.
     fn ls2d_free(handle: u32) { table::free(handle) }
 
     /// Number of objects that have not been freed, to find leaks.
@@ -57,9 +57,8 @@ api! {
         bytes.set(table::add(Bytes(data.slice(size)?.to_vec()))?)
     }
 
-    /// Returns the address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory. It is
-    /// for callers that cannot allocate memory, such as JavaScript. Each thread has one such buffer; a call with a
-    /// larger size may move it and keeps its contents.
+    /// Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
+    /// cannot allocate memory. Each thread has one such buffer. A larger size may move it and keeps its contents.
     fn ls2d_scratch(size: usize) -> usize {
         SCRATCH.with_borrow_mut(|scratch| {
             let words = size.div_ceil(size_of::<u64>()).max(1);

@@ -1,5 +1,5 @@
-//! Matches: the session of lockstep2d with inputs, states and packets as bytes. The caller passes received packets and
-//! the time, sends the packets that it takes from the match, and saves, restores and advances its game on request.
+//! Matches: the session of lockstep2d with inputs, states and packets as bytes. The caller transports packets and
+//! fulfils requests.
 
 use std::collections::VecDeque;
 
@@ -20,14 +20,14 @@ use crate::table::{self, Bytes, with};
 /// A participant of a match.
 pub(crate) struct Match {
     endpoint: Endpoint,
-    /// Packet that did not fit into the caller's buffer, kept for the next call.
+    /// Packet that did not fit into the caller's buffer.
     packet: Option<(Address, Vec<u8>)>,
-    /// Request whose inputs did not fit into the caller's buffer, kept for the next call.
+    /// Request whose inputs did not fit into the caller's buffer.
     request: Option<Request>,
     events: VecDeque<Happened>,
 }
 
-/// An event, with the downloaded state if it has one.
+/// An event, with the downloaded state if there is one.
 struct Happened {
     event: RawMatchEvent,
     state: Option<Vec<u8>>,
@@ -88,7 +88,6 @@ fn own_seats(config: &RawMatchConfig) -> u8 {
     u8::try_from(config.own_seats).unwrap_or(u8::MAX)
 }
 
-/// The request as a struct, and the inputs if the game has to advance.
 fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
     let raw = |kind, tick| RawRequest { kind, tick, absent: 0, guessed: 0 };
     match request {
@@ -109,7 +108,7 @@ fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
 
 api! {
     /// Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
-    /// start with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers.
+    /// start with two taken seats or the only one. The caller sets `peer`, `key` and `secret` to random numbers.
     fn ls2d_match_config_init(seats: u32, config: Out<'_, RawMatchConfig>) {
         let mut config = config;
         let number = u8::try_from(seats).map_err(|_| value("the number of seats", seats))?;
@@ -118,7 +117,7 @@ api! {
         config.set(RawMatchConfig::of(&defaults))
     }
 
-    /// Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes.
+    /// Opens a match. All peers pass the same `offer`, for example versions, rules and setup, of at most 512 bytes.
     fn ls2d_match_host(config: In<'_, RawMatchConfig>, offer: In<'_, u8>, offer_size: usize, handle: Out<'_, u32>) {
         let mut handle = handle;
         handle.check()?;
@@ -128,8 +127,7 @@ api! {
         handle.set(table::add(Match::new(Endpoint::host(config, identity, seats)?))?)
     }
 
-    /// Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
-    /// spectator.
+    /// Joins a match through the participant at the address `contact`, as a spectator if `own_seats` is 0.
     fn ls2d_match_join(
         config: In<'_, RawMatchConfig>,
         offer: In<'_, u8>,
@@ -150,7 +148,7 @@ api! {
         handle.set(table::add(Match::new(Endpoint::join(config, identity, role, contact)?))?)
     }
 
-    /// Sends the request to join to another participant, or again to the same one.
+    /// Sends the request to join to this participant.
     fn ls2d_match_ask(handle: u32, contact: In<'_, u8>, contact_size: usize) {
         let contact = address(&contact, contact_size)?;
         with(handle, |game: &mut Match| {
@@ -176,7 +174,7 @@ api! {
         })
     }
 
-    /// Advances the match to the time `now`. Call it every few milliseconds, and after packets have arrived.
+    /// Advances the match to the time `now`. Call it every few milliseconds and after packets have arrived.
     fn ls2d_match_update(handle: u32, now: u64) {
         with(handle, |game: &mut Match| {
             game.endpoint.update(now);
@@ -184,7 +182,7 @@ api! {
         })
     }
 
-    /// Writes 1 if it is time for `ls2d_match_advance`, otherwise 0.
+    /// Writes 1 if `ls2d_match_advance` is due, otherwise 0.
     fn ls2d_match_is_due(handle: u32, now: u64, due: Out<'_, u32>) {
         let mut due = due;
         with(handle, |game: &mut Match| {
@@ -192,9 +190,9 @@ api! {
         })
     }
 
-    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible:
-    /// `LS2D_REQUEST_ADVANCE` is then among the next requests. Writes 1 to `issued` if the inputs were issued;
-    /// otherwise they may be passed again. Without own seats, `size` is 0.
+    /// Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
+    /// then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
+    /// again. Without own seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         with(handle, |game: &mut Match| {
@@ -204,8 +202,8 @@ api! {
         })
     }
 
-    /// The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For
-    /// `LS2D_REQUEST_ADVANCE`, the inputs of all seats are written to the buffer. `LS2D_NONE` if there is none.
+    /// The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`, the
+    /// inputs of all seats are written to the buffer. `LS2D_NONE` if there is none.
     fn ls2d_match_next_request(
         handle: u32,
         request: Out<'_, RawRequest>,
@@ -236,8 +234,8 @@ api! {
         })
     }
 
-    /// The next packet to send, of at most 1200 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
-    /// if there is none.
+    /// The next packet, of at most 1200 bytes, and its destination, an address of at most 32 bytes. `LS2D_NONE` if
+    /// there is none.
     fn ls2d_match_next_packet(
         handle: u32,
         to: Out<'_, u8>,
@@ -276,7 +274,7 @@ api! {
         with(handle, |game: &mut Match| wants.set(game.endpoint.wants_state().into()))
     }
 
-    /// Offers the state after a number of final ticks to peers that join. It is kept until it has been sent.
+    /// Offers the state after a number of final ticks to peers that join.
     fn ls2d_match_offer_state(handle: u32, tick: u32, state: In<'_, u8>, size: usize) {
         let state = state.slice(size)?.to_vec();
         with(handle, |game: &mut Match| {
@@ -294,8 +292,8 @@ api! {
         })
     }
 
-    /// Writes three numbers of ticks: `played` counts all ticks played, `last` the ticks whose inputs are final, and
-    /// `confirmed` the ticks played with final inputs. Null pointers are not written.
+    /// Numbers of ticks: `played` in all, `last` with final inputs, `confirmed` played with final inputs. Null pointers
+    /// are not written.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
@@ -312,7 +310,7 @@ api! {
         with(handle, |game: &mut Match| seats.set(game.endpoint.session().map_or(0, Session::seats)))
     }
 
-    /// The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet, or not kept any more.
+    /// The final inputs of all seats for a tick. `LS2D_NONE` if they are not final or not kept.
     fn ls2d_match_final_inputs(
         handle: u32,
         tick: u32,
@@ -330,7 +328,7 @@ api! {
     }
 
     /// Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
-    /// packet loss in thousandths. Null pointers are not written.
+    /// loss in thousandths. Null pointers are not written.
     fn ls2d_match_link(
         handle: u32,
         peer: u32,
@@ -356,8 +354,8 @@ api! {
         })
     }
 
-    /// Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-    /// majority has decided on an end, other peers can get seats.
+    /// Requests an end of the match after a number of ticks, sent two seconds before. Until a majority has decided,
+    /// other peers can get seats.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);
@@ -365,7 +363,7 @@ api! {
         })
     }
 
-    /// Requests a pause from all other peers, or, with 0, withdraws the request.
+    /// Requests a pause, or, with 0, withdraws the request.
     fn ls2d_match_pause(handle: u32, paused: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.pause(paused != 0);
@@ -373,7 +371,7 @@ api! {
         })
     }
 
-    /// Votes for going on without a peer that is missing.
+    /// Votes for going on without a missing peer.
     fn ls2d_match_go_on_without(handle: u32, peer: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.go_on_without(PeerId(peer));
@@ -389,7 +387,7 @@ api! {
         })
     }
 
-    /// Sets how many ticks may be played with guessed inputs; 0 is lockstep.
+    /// Sets the number of ticks that may be played with guessed inputs; 0 is lockstep.
     fn ls2d_match_set_guess(handle: u32, ticks: u32) {
         let ticks = u16::try_from(ticks).map_err(|_| value("the number of guessed ticks", ticks))?;
         with(handle, |game: &mut Match| {

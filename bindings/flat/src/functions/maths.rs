@@ -1,4 +1,4 @@
-//! Mathematics on raw numbers, so that the rules of a game need no floats. Every result is the same on every machine.
+//! Mathematics on raw numbers, for rules of games without floats.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -13,7 +13,6 @@ fn undefined(what: &str) -> Failure {
     Failure::new(Status::Number, what)
 }
 
-/// The generator that a struct describes.
 fn generator(raw: RawRng) -> Outcome<Rng> {
     Ok(codec::decode(&codec::encode(&(raw.state, raw.increment)))?)
 }
@@ -34,7 +33,7 @@ api! {
         number.set(RawFx::of(parsed))
     }
 
-    /// Writes a number as decimal text with all its digits, and the length of the text.
+    /// Writes a number as exact decimal text, and the length of the text.
     fn ls2d_fx_format(number: RawFx, text: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut text, mut length) = (text, length);
         text.set_all(capacity, &mut length, number.fx().to_string().as_bytes())
@@ -103,7 +102,7 @@ api! {
     /// Cosine of an angle.
     fn ls2d_angle_cos(angle: RawAngle) -> RawFx { RawFx::of(widen(angle.angle().cos())) }
 
-    /// Direction of a vector as an angle from the x axis; 0 for the zero vector.
+    /// Angle of a vector from the x axis; 0 for the zero vector.
     fn ls2d_angle_of(x: RawFx, y: RawFx) -> RawAngle { RawAngle::of(Angle::of(Vec2::new(x.fx(), y.fx()))) }
 
     /// An angle of a number of degrees.
@@ -124,8 +123,8 @@ api! {
         rng.set(described(&Rng::new(seed))?)
     }
 
-    /// Draws a uniform number from 0 to below `bound`; 0 if `bound` is 0. `from` is the generator before the draw,
-    /// `rng` the one after it; they may point to the same struct.
+    /// Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` after
+    /// it, possibly the same struct.
     fn ls2d_rng_below(from: In<'_, RawRng>, rng: Out<'_, RawRng>, bound: u32, number: Out<'_, u32>) {
         let (mut rng, mut number) = (rng, number);
         let mut drawn = generator(from.get()?)?;
@@ -134,7 +133,7 @@ api! {
     }
 
     /// Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
-    /// the draw, `rng` the one after it; they may point to the same struct.
+    /// the draw, `rng` after it, possibly the same struct.
     fn ls2d_rng_range(
         from: In<'_, RawRng>,
         rng: Out<'_, RawRng>,
@@ -148,7 +147,7 @@ api! {
         rng.set(described(&drawn)?)
     }
 
-    /// Hash of bytes, for the state hash of a game with more state than a world.
+    /// Hash of bytes, for the state hash of a game.
     fn ls2d_hash_bytes(data: In<'_, u8>, size: usize, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         hash.set(RawHash::of(StateHash::of_bytes(data.slice(size)?)))

@@ -1,4 +1,4 @@
-//! The functions of the API, by subject.
+//! Functions by subject.
 
 mod character;
 mod definitions;
@@ -50,7 +50,7 @@ pub use world::*;
 
 use crate::describe::Function;
 
-/// Functions by subject, in the order of the header.
+/// In the order of the header.
 pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("The library", library::FUNCTIONS),
     ("Worlds", world::FUNCTIONS),
@@ -77,7 +77,6 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Mathematics", maths::FUNCTIONS),
 ];
 
-/// Calls of all functions with arguments drawn from bytes.
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     library::DRAWN,

@@ -1,4 +1,4 @@
-//! Queries: rays, shape casts, overlaps, points, distances.
+//! Queries.
 
 use lockstep2d::body::ShapeId;
 use lockstep2d::world::World;
@@ -25,7 +25,7 @@ fn copy_shapes(
 }
 
 api! {
-    /// Sets the defaults of a query: it sees everything except sensors.
+    /// Sets the defaults of a query, which does not see sensors.
     fn ls2d_query_filter_init(filter: Out<'_, RawQueryFilter>) {
         let mut filter = filter;
         filter.set(RawQueryFilter::default_filter())
@@ -37,7 +37,7 @@ api! {
         probe.set(RawProbe::of_kind(kind))
     }
 
-    /// The first shape that a ray meets, from a point along a translation in metres. `LS2D_NONE` without a hit.
+    /// The first shape that a ray meets on a translation in metres from a point. `LS2D_NONE` without a hit.
     fn ls2d_cast_ray(
         world: u32,
         x: RawFx,
@@ -78,7 +78,7 @@ api! {
         })
     }
 
-    /// The first shape that a probe meets as it moves along a translation in metres. `LS2D_NONE` without a hit.
+    /// The first shape that a probe meets on a translation in metres. `LS2D_NONE` without a hit.
     fn ls2d_cast_shape(
         world: u32,
         probe: In<'_, RawProbe>,
@@ -156,8 +156,8 @@ api! {
         })
     }
 
-    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world, or its
-    /// body is disabled.
+    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world or
+    /// disabled.
     fn ls2d_shape_distance(world: u32, a: RawShape, b: RawShape, distance: Out<'_, RawFx>) {
         let mut distance = distance;
         let (a, b) = (a.id()?, b.id()?);

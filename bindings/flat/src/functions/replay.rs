@@ -1,5 +1,4 @@
-//! Recording and verification of worlds that are changed by commands alone. The command `lockstep2d verify` also
-//! verifies the files.
+//! Recording and verification of worlds that commands alone change.
 
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::replay::{self, Limits, Mismatch, Recording, Verdict};
@@ -12,7 +11,7 @@ use crate::records::{RawConfig, RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, Commands, Kind, with, with_two};
 
-/// A recording; `None` once it is finished.
+/// `None` once it is finished.
 pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
 
 impl SandboxRecorder {
@@ -25,12 +24,12 @@ pub(super) fn finished() -> Failure {
     Failure::new(Status::Record, "the recording is finished")
 }
 
-/// The limits that a pointer refers to; the default limits for a null pointer.
+/// A null pointer stands for the default limits.
 pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
     if limits.is_null() { Ok(Limits::default()) } else { limits.get()?.limits() }
 }
 
-/// Returns the handle of a replay that was opened, or the verdict on a file that cannot be played.
+/// Writes a handle, or the verdict on a file that cannot be played.
 pub(super) fn set_opened<T: Kind>(
     opened: Result<T, Verdict>,
     handle: &mut Out<'_, u32>,
@@ -46,8 +45,8 @@ pub(super) fn set_opened<T: Kind>(
 }
 
 api! {
-    /// Sets the default limits of a replay. They allow a day of play at 60 ticks per second. A file made to be slow can
-    /// take hours to verify.
+    /// Sets the default limits of a replay, which allow a day of play at 60 ticks per second. A file made to be slow
+    /// can take hours to verify.
     fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
         let mut limits = limits;
         limits.set(RawLimits::of(&Limits::default()))
@@ -64,8 +63,8 @@ api! {
         recording.set(table::add(SandboxRecorder(Some(started)))?)
     }
 
-    /// Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
-    /// that the world refuses are skipped.
+    /// Executes and empties a list of commands, and advances the recorded world by one tick. Refused commands are
+    /// skipped.
     fn ls2d_recording_step(recording: u32, commands: u32) {
         with_two(recording, commands, |recording: &mut SandboxRecorder, Commands(list)| {
             recording.get()?.step(&[std::mem::take(list)])?;
@@ -82,7 +81,7 @@ api! {
         world.set(table::add(copy)?)
     }
 
-    /// Takes the bytes that are finished, to be appended to the file.
+    /// Takes the finished bytes, to be appended to the file.
     fn ls2d_recording_take(recording: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
@@ -90,7 +89,7 @@ api! {
         bytes.set(table::add(Bytes(taken))?)
     }
 
-    /// Ends a recording, and returns the bytes that have not been taken yet.
+    /// Ends a recording, and returns the remaining bytes.
     fn ls2d_recording_finish(recording: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;

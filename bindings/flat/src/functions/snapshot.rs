@@ -1,4 +1,4 @@
-//! Snapshots in memory, for rollbacks, and worlds as bytes, for files and networks.
+//! Snapshots for rollbacks, and worlds as bytes.
 
 use lockstep2d::world::{Snapshot, World};
 
@@ -16,7 +16,7 @@ api! {
         snapshot.set(table::add(saved)?)
     }
 
-    /// Saves a world into an existing snapshot, and reuses its memory: the fastest way to save every tick.
+    /// Saves a world into an existing snapshot, whose memory is reused.
     fn ls2d_world_save_into(world: u32, snapshot: u32) {
         with_two(world, snapshot, |world: &mut World, snapshot: &mut Snapshot| {
             world.save_into(snapshot);
@@ -46,7 +46,7 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Makes a world from bytes, which may come from any source and are checked.
+    /// Makes a world from bytes, which may come from any source.
     fn ls2d_world_decode(data: In<'_, u8>, size: usize, world: Out<'_, u32>) {
         let mut world = world;
         world.check()?;

@@ -1,4 +1,4 @@
-//! Seeking in replays of worlds, forwards and backwards to any tick.
+//! Seeking in replays of worlds.
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{SeekError, Step, Timeline, TimelineOptions};
@@ -14,7 +14,6 @@ use crate::table::{self, with};
 type Seekable<'a> = Timeline<'a, Sandbox>;
 
 self_cell! {
-    /// A timeline and the file that it plays.
     pub(crate) struct SandboxTimeline {
         owner: Vec<u8>,
         #[not_covariant]
@@ -30,7 +29,7 @@ fn failed(error: &SeekError) -> Failure {
     Failure::new(status, error.to_string())
 }
 
-/// Moves a timeline. The result is the failure for `LS2D_NONE` if there is no further tick.
+/// Fails with `LS2D_NONE` if there is no further tick.
 fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekError>) -> Outcome {
     with(timeline, |timeline: &mut SandboxTimeline| {
         match timeline.with_dependent_mut(|_, timeline| by(timeline)) {
@@ -42,7 +41,7 @@ fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekErro
 }
 
 api! {
-    /// Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
+    /// Opens a replay of a world from any source, to go to any of its ticks. Tick t is the state after t ticks. A null
     /// `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
     /// is `LS2D_RECORD`.
     fn ls2d_timeline_open(
@@ -71,8 +70,7 @@ api! {
         })
     }
 
-    /// Goes to a tick. Going to a tick that was played before is fast. Checkpoints on the way are compared: if one
-    /// differs, the result is `LS2D_RECORD`, and the timeline stays there.
+    /// Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays there.
     fn ls2d_timeline_seek(timeline: u32, tick: u64) {
         go(timeline, |timeline| timeline.seek(tick).map(|()| Step::Ticked))
     }

@@ -1,4 +1,4 @@
-//! Views of a world: bodies, shapes, joints.
+//! Bodies, shapes and joints of a world.
 
 use lockstep2d::body::{Body, Shape};
 use lockstep2d::solver::Joint;
@@ -82,7 +82,7 @@ api! {
         })
     }
 
-    /// Name of a body: 16 bytes, padded with zeros; all zeros if it has no name.
+    /// Name of a body: 16 bytes, padded with zeros.
     fn ls2d_body_name(world: u32, id: RawBody, name: Out<'_, [u8; 16]>) {
         let mut name = name;
         with(world, |world: &mut World| {
@@ -94,7 +94,7 @@ api! {
         })
     }
 
-    /// Velocity in m/s of the material point of a body at a point of the world.
+    /// Velocity in m/s of a body at a point of the world.
     fn ls2d_body_velocity_at(world: u32, id: RawBody, x: RawFx, y: RawFx, velocity: Out<'_, RawVec2>) {
         let mut velocity = velocity;
         with(world, |world: &mut World| {
@@ -112,7 +112,7 @@ api! {
         })
     }
 
-    /// An axis-aligned box around a shape with some margin, in world coordinates.
+    /// An axis-aligned box around a shape, with a margin.
     fn ls2d_shape_box(world: u32, id: RawShape, area: Out<'_, RawAabb>) {
         let mut area = area;
         with(world, |world: &mut World| area.set(RawAabb::of(shape(world, id)?.fat_aabb())))
@@ -169,7 +169,7 @@ api! {
         })
     }
 
-    /// Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor.
+    /// Force in N of a joint on body B in the last sub-step, and torque in N m about B's anchor.
     fn ls2d_joint_force(world: u32, id: RawJoint, force: Out<'_, RawVec2>, torque: Out<'_, RawFx>) {
         let (mut force, mut torque) = (force, torque);
         with(world, |world: &mut World| {
@@ -180,8 +180,8 @@ api! {
         })
     }
 
-    /// Sets the anchors and angles of a definition for the current poses of the bodies: the anchor at a point of the
-    /// world, and the axis along a direction in the world. A direction of zero is the x axis.
+    /// Sets the anchors and angles of a definition for the current poses: the anchor at a point of the world, the axis
+    /// along a direction in the world. A direction of zero is the x axis.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

@@ -17,9 +17,9 @@ api! {
         config.set(RawConfig::of(&Config::default()))
     }
 
-    /// Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
-    /// by less than 2.5 % of a box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative
-    /// distance to a fiftieth of `size`, but not below 1 mm. Call it after gravity and the tick rate are set.
+    /// Adapts sub-steps and contact stiffness so that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a
+    /// box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative distance to a fiftieth of
+    /// `size`, but not below 1 mm. Set gravity and the tick rate before.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());
@@ -50,7 +50,7 @@ api! {
         })
     }
 
-    /// Advances a world by some ticks. Only the events of the last one are kept.
+    /// Advances a world by some ticks, and keeps the events of the last one.
     fn ls2d_world_steps(world: u32, ticks: u32) {
         with(world, |world: &mut World| {
             (0..ticks).for_each(|_| world.step());
@@ -58,8 +58,7 @@ api! {
         })
     }
 
-    /// Hash of the state of a world. The same settings, edits and ticks in the same order give the same hash on every
-    /// machine.
+    /// Hash of the state. Equal settings, edits and ticks in the same order give equal hashes on every machine.
     fn ls2d_world_hash(world: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))
@@ -92,8 +91,8 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results of the solver that were clamped since the world was made, plus one for every tick in which
-    /// `pair_limit` left pairs out. A body at the speed limit does not count.
+    /// Number of clamped results of the solver since the world was made, plus one for every tick in which `pair_limit`
+    /// left pairs out. A body at the speed limit does not count.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))
@@ -127,14 +126,14 @@ api! {
         })
     }
 
-    /// Draws a uniform number of 32 bits from the world's generator, which is part of the state.
+    /// Draws a number of 32 bits from the world's generator, which is part of the state.
     fn ls2d_world_random(world: u32, number: Out<'_, u32>) {
         let mut number = number;
         number.check()?;
         with(world, |world: &mut World| number.set(world.rng().next_u32()))
     }
 
-    /// Draws a uniform number from 0 to below `bound` from the world's generator.
+    /// Draws a uniform number below `bound` from the world's generator.
     fn ls2d_world_random_below(world: u32, bound: u32, number: Out<'_, u32>) {
         let mut number = number;
         number.check()?;
@@ -149,7 +148,7 @@ api! {
         with(world, |world: &mut World| number.set(RawFx::of(world.rng().range(low, high))))
     }
 
-    /// Drops the caches of a world. Does not change any hash; the next tick takes longer.
+    /// Drops the caches of a world, which does not change its hash.
     fn ls2d_world_clear_scratch(world: u32) {
         with(world, |world: &mut World| {
             world.clear_scratch();

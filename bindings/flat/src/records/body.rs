@@ -30,7 +30,7 @@ constants! {
     BODY_LOCK_ROTATION = 16, "LS2D_BODY_LOCK_ROTATION";
     /// Flag of a body: may fall asleep.
     BODY_MAY_SLEEP = 32, "LS2D_BODY_MAY_SLEEP";
-    /// Flag of a body: its mass is given, not computed from its shapes.
+    /// Flag of a body: its mass is given instead of computed from its shapes.
     BODY_GIVEN_MASS = 64, "LS2D_BODY_GIVEN_MASS";
     /// `ls2d_body_def.continuous`: swept against nothing.
     SWEEP_OFF = 0, "LS2D_SWEEP_OFF";
@@ -42,7 +42,6 @@ constants! {
     SWEEP_KINEMATIC = 3, "LS2D_SWEEP_KINEMATIC";
 }
 
-/// The flags of a definition.
 const FLAGS: u32 = BODY_ENABLED
     | BODY_ASLEEP
     | BODY_LOCK_X
@@ -60,7 +59,7 @@ records! {
         kind: u32,
         /// `LS2D_BODY_` flags.
         flags: u32,
-        /// `LS2D_SWEEP_OFF` and so on: the bodies through which this body cannot tunnel.
+        /// `LS2D_SWEEP_OFF` and so on.
         continuous: u32,
         /// Origin in the world, in metres.
         position: RawVec2,
@@ -86,7 +85,7 @@ records! {
         gravity_scale: RawFx,
         /// Speed in m/s below which the body becomes ready to sleep.
         sleep_speed: RawFx,
-        /// A number for the game, part of the state.
+        /// A number for the game.
         user_data: u64,
         /// Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros; empty for none.
         name: [u8; 16],
@@ -114,7 +113,7 @@ records! {
         mass: RawFx,
         /// Moment of inertia about the centre of mass in kg m².
         inertia: RawFx,
-        /// Number that the game stores with the body.
+        /// The game's number.
         user_data: u64,
         /// Decay rate of the velocity, per second.
         linear_damping: RawFx,
@@ -124,7 +123,7 @@ records! {
         gravity_scale: RawFx,
         /// Speed in m/s below which the body becomes ready to sleep.
         sleep_speed: RawFx,
-        /// An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel.
+        /// An `LS2D_SWEEP_` constant.
         continuous: u32,
         /// Reserved: 0.
         reserved: u32,
@@ -195,7 +194,7 @@ fn settings_flags(settings: &BodySettings) -> u32 {
         | flag(settings.may_sleep, BODY_MAY_SLEEP)
 }
 
-/// Parses a name that ends before the first zero byte.
+/// A name ends before the first zero byte.
 pub(crate) fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
     let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     if text.is_empty() {
@@ -339,12 +338,10 @@ impl RawPose {
         }
     }
 
-    /// Position and rotation at which a body is added.
     pub(crate) const fn pose(&self) -> BodyPose {
         BodyPose { position: self.position.vec(), angle: self.angle.angle() }
     }
 
-    /// The pose after a move.
     pub(crate) fn of_move(event: &MoveEvent) -> Self {
         RawPose {
             body: RawBody::of(event.body),
@@ -356,7 +353,6 @@ impl RawPose {
 }
 
 impl RawExplosion {
-    /// An explosion with the default radius and falloff.
     pub(crate) fn new(centre: Vec2<Fx>, impulse: Fx) -> Self {
         let Explosion { centre, radius, falloff, impulse_per_length, mask } = Explosion::new(centre, impulse);
         RawExplosion {

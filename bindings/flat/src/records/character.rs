@@ -1,4 +1,4 @@
-//! Characters and the surfaces that they meet.
+//! Characters.
 
 use lockstep2d::body::{Geometry, ShapeDef};
 use lockstep2d::math::{Fx, Vec2};
@@ -13,7 +13,7 @@ use crate::status::Outcome;
 constants! {
     /// `ls2d_mover_state.flags`: the character stands on ground.
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
-    /// `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on.
+    /// `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
 }
 
@@ -26,7 +26,7 @@ records! {
         slope_max: RawAngle,
         /// Height in metres of steps that it climbs without a jump.
         step_height: RawFx,
-        /// Distance in metres by which the ground may descend within a tick while the character follows it.
+        /// Distance in metres by which ground may descend within a tick while the character follows it.
         snap_distance: RawFx,
         /// Its geometry; other fields of the definition have no effect.
         shape: RawShapeDef,
@@ -38,7 +38,7 @@ records! {
         shape: RawShape,
         /// Its body.
         body: RawBody,
-        /// Position of the body's origin in the world when the surface was met, in metres.
+        /// Position of the body's origin at that time, in metres.
         body_position: RawVec2,
         /// Velocity of the surface in m/s.
         velocity: RawVec2,
@@ -48,13 +48,13 @@ records! {
         point: RawVec2,
         /// Distance of the character from the surface in metres, negative if they overlap.
         separation: RawFx,
-        /// Rotation of the body when the surface was met.
+        /// Rotation of the body at that time.
         body_angle: RawAngle,
         /// Reserved: 0.
         reserved: u32,
     }
 
-    /// State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first state.
+    /// State of a character, to be kept by the game. `ls2d_mover_state_init` sets the first state.
     struct RawMoverState = "ls2d_mover_state" {
         /// Size of this struct in bytes.
         size: u32,
@@ -70,12 +70,10 @@ records! {
 }
 
 impl RawMover {
-    /// A character whose geometry has to be set.
     pub(crate) fn of_kind(kind: u32) -> Self {
         let shape = ShapeDef::new(Geometry::Circle { radius: Fx::ZERO });
         RawMover {
             size: size::<Self>(),
-            // The defaults: slopes up to 45 degrees, no steps, and ground that descends by up to 0.1 m.
             slope_max: RawAngle(1 << 29),
             step_height: RawFx(0),
             snap_distance: RawFx::of(lockstep2d::fx!(0.1)),

@@ -11,7 +11,7 @@ use crate::status::{Outcome, value};
 constants! {
     /// `ls2d_config.flags`: bodies at rest fall asleep.
     SLEEPING = 1, "LS2D_SLEEPING";
-    /// `ls2d_config.flags`: fast bodies are swept against shapes that they might pass through.
+    /// `ls2d_config.flags`: fast bodies are swept so that they do not pass through shapes.
     CONTINUOUS = 2, "LS2D_CONTINUOUS";
     /// `ls2d_config.contact`: contacts are soft springs.
     CONTACT_SOFT = 0, "LS2D_CONTACT_SOFT";
@@ -36,9 +36,9 @@ records! {
         contact: u32,
         /// Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
         flags: u32,
-        /// Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step.
+        /// Stiffness of soft contacts in Hz, or share of the overlap corrected in each sub-step.
         contact_stiffness: RawFx,
-        /// Damping ratio of soft contacts, or overlap in metres that Baumgarte contacts leave uncorrected.
+        /// Damping ratio of soft contacts, or overlap in metres that is not corrected.
         contact_damping: RawFx,
         /// Largest speed in m/s with which contacts push shapes apart.
         contact_push_speed: RawFx,
@@ -50,8 +50,7 @@ records! {
         restitution_threshold: RawFx,
         /// Largest speed of a body in m/s.
         speed_max: RawFx,
-        /// Distance in metres at which shapes get contact points before they touch. Pairs that approach each other have
-        /// a larger distance.
+        /// Distance in metres at which shapes get contact points, more if they approach each other.
         speculative_distance: RawFx,
         /// Largest margin in metres of the bounding boxes in the broad phase.
         fat_margin: RawFx,

@@ -30,7 +30,7 @@ records! {
         impulse: RawFx,
     }
 
-    /// A sensor that began or ceased to overlap a shape. A handle is stale if its shape was removed.
+    /// A sensor and a shape that began or ceased to overlap. A handle is stale if its shape was removed.
     struct RawSensorEvent = "ls2d_sensor_event" {
         /// The sensor.
         sensor: RawShape,

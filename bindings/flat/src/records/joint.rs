@@ -1,4 +1,4 @@
-//! Joints: one struct for all kinds, whose flags select the optional parts of a joint (`joint_parts.rs`).
+//! Joints: one struct for all kinds, with flags for optional parts.
 
 use lockstep2d::math::Fx;
 use lockstep2d::solver::{JointDef, JointFrame, Soft, Threshold, ThresholdAction};
@@ -50,7 +50,7 @@ constants! {
     JOINT_THRESHOLD_FORCE = 256, "LS2D_JOINT_THRESHOLD_FORCE";
     /// Flag of a joint: has `threshold_torque`.
     JOINT_THRESHOLD_TORQUE = 512, "LS2D_JOINT_THRESHOLD_TORQUE";
-    /// Flag of a joint: breaks beyond a threshold, instead of only being reported.
+    /// Flag of a joint: breaks beyond a threshold.
     JOINT_BREAKS = 1024, "LS2D_JOINT_BREAKS";
     /// Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor).
     JOINT_LINEAR_MOTOR = 2048, "LS2D_JOINT_LINEAR_MOTOR";
@@ -61,8 +61,8 @@ constants! {
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
-    /// read only if that flag is set, except for `length`, which a pulley reads without a flag.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named by a flag is read only with that
+    /// flag, except that a pulley reads `length`.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,
@@ -140,13 +140,12 @@ records! {
         wheel_b: RawVec2,
         /// Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`.
         ratio: RawFx,
-        /// A number for the game, part of the state.
+        /// A number for the game.
         user_data: u64,
     }
 }
 
 impl RawJointDef {
-    /// A joint without parts.
     fn empty() -> Self {
         let (zero, origin) = (RawFx(0), RawVec2::ZERO);
         RawJointDef {
@@ -192,7 +191,6 @@ impl RawJointDef {
         }
     }
 
-    /// The defaults of a joint of the given kind.
     pub(crate) fn of_kind(kind: u32) -> Outcome<Self> {
         if kind > PULLEY {
             return Err(value("the kind of a joint", kind));

@@ -1,4 +1,4 @@
-//! Optional parts of joints: limits, motors and springs, by kind.
+//! Optional parts of joints.
 
 use lockstep2d::math::Fx;
 use lockstep2d::solver::{
@@ -11,7 +11,7 @@ use super::{check_flags, flag, has};
 use crate::numbers::{RawFx, RawVec2};
 use crate::status::{Outcome, value};
 
-/// Flags that all kinds of joints allow.
+/// Flags of all kinds of joints.
 const COMMON: u32 = JOINT_COLLIDE
     | JOINT_ENABLED
     | JOINT_SOFTNESS
@@ -21,7 +21,7 @@ const COMMON: u32 = JOINT_COLLIDE
 /// Flags of revolute, prismatic, distance and wheel joints.
 const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
 
-/// Options of revolute, prismatic, wheel and distance joints. A motor joint has only the motor.
+/// Options of revolute, prismatic, wheel and distance joints.
 struct Options {
     limit: Option<JointLimit>,
     motor: Option<Drive>,
@@ -146,7 +146,7 @@ impl RawJointDef {
         [self.if_has(JOINT_LINEAR_SPRING, linear), self.if_has(JOINT_ANGULAR_SPRING, angular)]
     }
 
-    /// Flags that the kind allows.
+    /// Flags of the kind.
     fn allowed(&self) -> Outcome<u32> {
         Ok(COMMON
             | match self.kind {

@@ -9,11 +9,11 @@ use crate::numbers::RawHash;
 use crate::status::{Outcome, value};
 
 constants! {
-    /// Verdict: the setup and the inputs reproduce every checkpoint and the trailer of the file.
+    /// Verdict: setup and inputs reproduce every checkpoint and the trailer.
     MATCH = 0, "LS2D_MATCH";
-    /// Verdict: a claim or the final hash in the trailer differs from the result of the simulation.
+    /// Verdict: a claim or the final hash in the trailer differs from the simulation.
     CLAIM_MISMATCH = 1, "LS2D_CLAIM_MISMATCH";
-    /// Verdict: the simulation diverges from the recorded game.
+    /// Verdict: the simulation diverges from the checkpoints.
     DIVERGED = 2, "LS2D_DIVERGED";
     /// Verdict: the file ends before its trailer.
     INCOMPLETE = 3, "LS2D_INCOMPLETE";
@@ -21,29 +21,29 @@ constants! {
     MALFORMED = 4, "LS2D_MALFORMED";
     /// Verdict: the file exceeds one of the limits.
     LIMIT_EXCEEDED = 5, "LS2D_LIMIT_EXCEEDED";
-    /// Verdict: recorded by another version of the engine, or with other rules.
+    /// Verdict: recorded with another version of the engine, or other rules.
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
-    /// Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced.
+    /// Request: keep a copy of the state before `tick`. It replaces an older one for the same tick.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
-    /// Request: restore the copy of the state before `tick`. Only a replay may request later copies again.
+    /// Request: restore the copy of the state before `tick`. In a match, later copies are not requested again.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
     /// Request: simulate `tick` with the inputs.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
-    /// Request of a match: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. Request of
-    /// a replay: pass the hash of the current state to `ls2d_replay_check`.
+    /// Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
+    /// hash of the current state to `ls2d_replay_check`.
     REQUEST_CHECKSUM = 3, "LS2D_REQUEST_CHECKSUM";
-    /// Request: copies of states before `tick` are no longer needed.
+    /// Request: copies of states before `tick` are not needed.
     REQUEST_FORGET = 4, "LS2D_REQUEST_FORGET";
-    /// Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. For `LS2D_MATCH_FINISHED`,
-    /// `tick` is the number of ticks of the match.
+    /// Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
+    /// ticks.
     EVENT_STATUS = 0, "LS2D_EVENT_STATUS";
-    /// Event: the voters, the seats, or the start or end of the match have changed; `value` counts the changes.
+    /// Event: voters, seats, start or end of the match have changed. `value` counts the changes.
     EVENT_VIEW = 1, "LS2D_EVENT_VIEW";
     /// Event: `peer` has `seat` from `tick` on.
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
-    /// Event: `peer` no longer has `seat` from `tick` on.
+    /// Event: `peer` loses `seat` at `tick`.
     EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
-    /// Event: play stalls because inputs of `peer` are missing; `value` is 1 if it is heard, also through other peers.
+    /// Event: play stalls for inputs of `peer`. `value` is 1 if it is heard, also through other peers.
     EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
     /// Event: play continues.
     EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
@@ -51,16 +51,16 @@ constants! {
     EVENT_PAUSE = 6, "LS2D_EVENT_PAUSE";
     /// Event: the match ends after `tick` ticks.
     EVENT_END = 7, "LS2D_EVENT_END";
-    /// Event: after `tick` ticks, `peer` has a different state; the hashes are `ours` and `theirs`.
+    /// Event: after `tick` ticks, `peer` has a different state, with the hashes `ours` and `theirs`.
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
     /// Event: `peer` has issued two different inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the other peers no longer keep the inputs that this peer lacks; it has to join again.
+    /// Event: the other peers do not keep the inputs that this peer lacks. It has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
     /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
     /// Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
-    /// The game has to restore it before it fulfils further requests.
+    /// Restore it before the next request.
     EVENT_STATE = 12, "LS2D_EVENT_STATE";
     /// Event: the downloaded bytes are not a valid state; they are requested again.
     EVENT_BAD_STATE = 13, "LS2D_EVENT_BAD_STATE";
@@ -76,17 +76,17 @@ constants! {
     MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
     /// Status: follows the match.
     MATCH_WATCHING = 1, "LS2D_MATCH_WATCHING";
-    /// Status: has a seat, or is a dedicated server, in a match that has not begun, because too few seats are taken.
+    /// Status: has a seat, or is a dedicated server, and waits for the start.
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
-    /// Status: hears from no majority of the peers, directly or through other peers.
+    /// Status: hears no majority of the peers, directly or through others.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
     /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
     /// Status: removed for good.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
-    /// Status: announces its departure to the other peers.
+    /// Status: announces its departure.
     MATCH_LEAVING = 7, "LS2D_MATCH_LEAVING";
     /// Status: has left.
     MATCH_LEFT = 8, "LS2D_MATCH_LEFT";
@@ -125,14 +125,14 @@ records! {
         total_work: u64,
     }
 
-    /// Result of verifying a replay. Only `LS2D_MATCH` means that the file is valid.
+    /// Result of verifying a replay. Any other verdict than `LS2D_MATCH` is a failure.
     struct RawVerdict = "ls2d_verdict" {
         /// `LS2D_MATCH` and so on.
         kind: u32,
         /// Reserved: 0.
         reserved: u32,
-        /// Number of ticks that were played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; for
-        /// `LS2D_DIVERGED`, the tick of the first checkpoint that differs; otherwise 0.
+        /// Number of ticks played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; tick of the first
+        /// checkpoint that differs, for `LS2D_DIVERGED`; otherwise 0.
         ticks: u64,
         /// Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0.
         hash: RawHash,
@@ -164,22 +164,21 @@ records! {
         check_interval: u32,
         /// Number of ticks that may be played beyond the last final one.
         history: u32,
-        /// Minimum number of final ticks whose inputs are kept for peers that return.
+        /// Minimum number of final ticks whose inputs are kept.
         log_ticks: u32,
-        /// Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins.
+        /// Number of ticks from the effect of a join to the first tick of the peer.
         seat_lead: u32,
         /// A peer that lags by at most this many ticks may have a seat.
         seat_within: u32,
-        /// Number of this peer: random, new for each process.
+        /// Random number of this peer, new for each process.
         peer: u32,
         /// Tag of the match: packets with another tag are ignored.
         match_tag: u64,
-        /// Time in microseconds for which play stalls because of a missing peer before the other peers go on without
-        /// it.
+        /// Time in microseconds for which play stalls for a missing peer before the others go on.
         patience: u64,
-        /// Identity of the player: a peer that joins again with the same key gets its seat back.
+        /// Identity of the player: a peer that joins with the same key gets its seat back.
         key: u64,
-        /// Secret random numbers, which protect against packets with forged addresses.
+        /// Secret random numbers, against packets with forged addresses.
         secret: [u64; 2],
     }
 
@@ -279,7 +278,6 @@ impl RawVerdict {
     }
 }
 
-/// Converts a field of the struct to the width that the session uses.
 fn narrow<T: TryFrom<u32>>(name: &str, given: u32) -> Outcome<T> {
     T::try_from(given).map_err(|_| value(name, given))
 }
@@ -334,7 +332,6 @@ impl RawMatchConfig {
     }
 }
 
-/// Number of a status.
 pub(crate) const fn match_status(status: Status) -> u32 {
     match status {
         Status::Joining => MATCH_JOINING,
@@ -352,7 +349,6 @@ pub(crate) const fn match_status(status: Status) -> u32 {
 }
 
 impl RawMatchEvent {
-    /// An event with only its kind set.
     pub(crate) fn new(kind: u32) -> Self {
         let none = RawHash { low: 0, high: 0 };
         RawMatchEvent { kind, peer: 0, seat: 0, tick: 0, value: 0, reserved: 0, ours: none, theirs: none }
@@ -387,7 +383,6 @@ impl RawMatchEvent {
         }
     }
 
-    /// The event for a refusal by the contact.
     pub(crate) fn refused(reason: RefusalReason) -> Self {
         let value = match reason {
             RefusalReason::Offer => REFUSED_OFFER,

@@ -1,7 +1,6 @@
-//! Structs that callers fill or receive, and their conversions from and to the types of the library.
+//! Structs that callers fill or receive, and their conversions.
 //!
-//! Structs with an `ls2d_*_init` function, except `ls2d_rng`, begin with their size in bytes, so that a program that
-//! was compiled with another version of the header is refused. The function sets the size and the defaults.
+//! The size at their beginning detects programs that were compiled with another version of the header.
 
 mod body;
 mod character;
@@ -27,7 +26,6 @@ pub use shape::*;
 use crate::describe::{Constant, Struct};
 use crate::status::{Failure, Outcome, Status, value};
 
-/// All constants of the structs.
 pub(crate) const CONSTANTS: &[&[Constant]] = &[
     body::CONSTANTS,
     character::CONSTANTS,
@@ -38,7 +36,7 @@ pub(crate) const CONSTANTS: &[&[Constant]] = &[
     shape::CONSTANTS,
 ];
 
-/// All structs, in an order in which none uses a later one.
+/// No struct uses a later one.
 pub(crate) const STRUCTS: &[&[Struct]] = &[
     crate::numbers::STRUCTS,
     config::STRUCTS,
@@ -51,7 +49,6 @@ pub(crate) const STRUCTS: &[&[Struct]] = &[
     matches::STRUCTS,
 ];
 
-/// Size of a struct in bytes, for its `size` field.
 pub(crate) const fn size<T>() -> u32 {
     let size = size_of::<T>();
     assert!(size < 1 << 16, "structs are small");
@@ -60,7 +57,6 @@ pub(crate) const fn size<T>() -> u32 {
     size
 }
 
-/// Checks the size field of a struct.
 fn check_size<T>(given: u32) -> Outcome {
     if given == size::<T>() {
         return Ok(());
@@ -69,7 +65,7 @@ fn check_size<T>(given: u32) -> Outcome {
     Err(Failure::new(Status::Size, format!("a struct of {given} bytes, this version expects {expected}")))
 }
 
-/// Checks that only flags in `known` are set.
+/// Checks that all flags are in `known`.
 fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
     if flags & !known == 0 {
         Ok(())
@@ -78,17 +74,15 @@ fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
     }
 }
 
-/// Checks that a reserved field is 0, so that a later version can use it.
+/// A later version may use reserved fields.
 fn check_reserved(reserved: u32) -> Outcome {
     if reserved == 0 { Ok(()) } else { Err(value("a reserved field", reserved)) }
 }
 
-/// Whether a flag is set.
 const fn has(flags: u32, flag: u32) -> bool {
     flags & flag != 0
 }
 
-/// Returns `flag` if the condition holds, otherwise 0.
 const fn flag(holds: bool, flag: u32) -> u32 {
     if holds { flag } else { 0 }
 }

@@ -14,7 +14,7 @@ use crate::status::{Outcome, value};
 constants! {
     /// `ls2d_query_filter.flags`: the query sees sensors.
     QUERY_SENSORS = 1, "LS2D_QUERY_SENSORS";
-    /// Rays report shapes that they start in; casts report only those into which they would move deeper.
+    /// Rays report shapes that they start in. Casts report those into which they would move deeper.
     OVERLAP_RESIST = 0, "LS2D_OVERLAP_RESIST";
     /// Rays and casts report shapes that they start in.
     OVERLAP_REPORT = 1, "LS2D_OVERLAP_REPORT";
@@ -23,7 +23,7 @@ constants! {
 }
 
 records! {
-    /// Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`.
+    /// Selects the shapes that a query sees. Null stands for the defaults of `ls2d_query_filter_init`.
     struct RawQueryFilter = "ls2d_query_filter" {
         /// Size of this struct in bytes.
         size: u32,
@@ -148,14 +148,12 @@ impl RawQueryFilter {
         })
     }
 
-    /// The filter that a pointer refers to; the default filter for a null pointer.
     pub(crate) fn of(pointer: &In<'_, Self>) -> Outcome<QueryFilter> {
         if pointer.is_null() { Ok(QueryFilter::default()) } else { pointer.get()?.filter() }
     }
 }
 
 impl RawProbe {
-    /// A shape at the origin, whose geometry has to be set.
     pub(crate) fn of_kind(kind: u32) -> Self {
         let shape = ShapeDef::new(Geometry::Circle { radius: Fx::ZERO });
         let shape = RawShapeDef { kind, ..RawShapeDef::of(&shape) };

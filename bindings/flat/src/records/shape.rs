@@ -1,4 +1,4 @@
-//! Shapes: geometry, material, filter, areas.
+//! Shapes and areas.
 
 use lockstep2d::body::{
     Area, Attraction, EventSwitches, Falloff, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, Sides,
@@ -19,13 +19,12 @@ constants! {
     POLYGON = 2, "LS2D_POLYGON";
     /// Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`.
     CAPSULE = 3, "LS2D_CAPSULE";
-    /// Kind of a shape: a link of a chain from `points[0]` to `points[1]`; the neighbours' far ends are `points[2]` and
-    /// `points[3]`. `ls2d_chain_links` makes them.
+    /// Kind of a shape: a link of a chain from `points[0]` to `points[1]`, made by `ls2d_chain_links`. The far ends of
+    /// its neighbours are `points[2]` and `points[3]`.
     LINK = 4, "LS2D_LINK";
     /// Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`.
     HULL = 5, "LS2D_HULL";
-    /// Kind of a shape: a rectangle with the half width `points[0].x` and the half height `points[0].y`, rounded by
-    /// `radius`.
+    /// Kind of a shape: a rectangle of half width `points[0].x` and half height `points[0].y`, rounded by `radius`.
     RECTANGLE = 6, "LS2D_RECTANGLE";
     /// Flag of a shape: detects overlaps, and does not collide.
     SHAPE_SENSOR = 1, "LS2D_SHAPE_SENSOR";
@@ -33,7 +32,7 @@ constants! {
     SHAPE_ONE_WAY = 2, "LS2D_SHAPE_ONE_WAY";
     /// Flag of a shape: has its own `restitution_threshold`.
     SHAPE_RESTITUTION_THRESHOLD = 4, "LS2D_SHAPE_RESTITUTION_THRESHOLD";
-    /// Flag of a shape: a sensor that acts on the bodies in it.
+    /// Flag of a shape: a sensor that acts on bodies in it.
     SHAPE_AREA = 8, "LS2D_SHAPE_AREA";
     /// Flag of a shape: the area attracts bodies to its centre.
     SHAPE_ATTRACTION = 16, "LS2D_SHAPE_ATTRACTION";
@@ -49,10 +48,9 @@ constants! {
     SHAPE_LINK_BEFORE = 512, "LS2D_SHAPE_LINK_BEFORE";
     /// Flag of a link: it has a neighbour after `points[1]`.
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
-    /// Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`.
+    /// Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing: the mean of both values. If the rules of two shapes differ, the rule with the larger number
-    /// applies.
+    /// Rule of mixing: the mean. Of two rules, the larger number applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
     /// Rule of mixing: the square root of the product.
     MIX_GEOMETRIC_MEAN = 1, "LS2D_MIX_GEOMETRIC_MEAN";
@@ -62,11 +60,11 @@ constants! {
     MIX_PRODUCT = 3, "LS2D_MIX_PRODUCT";
     /// Rule of mixing: the larger value.
     MIX_MAXIMUM = 4, "LS2D_MIX_MAXIMUM";
-    /// Attraction that is the same at all distances beyond `attraction_radius`.
+    /// Attraction that is constant beyond `attraction_radius`.
     FALLOFF_CONSTANT = 0, "LS2D_FALLOFF_CONSTANT";
-    /// Attraction that is inversely proportional to the distance beyond `attraction_radius`.
+    /// Attraction that decreases with the distance beyond `attraction_radius`.
     FALLOFF_INVERSE = 1, "LS2D_FALLOFF_INVERSE";
-    /// Attraction that is inversely proportional to the square of the distance beyond `attraction_radius`.
+    /// Attraction that decreases with the square of the distance beyond `attraction_radius`.
     FALLOFF_INVERSE_SQUARE = 2, "LS2D_FALLOFF_INVERSE_SQUARE";
 }
 
@@ -107,8 +105,7 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Shapes with the same group other than 0 always collide if the number is positive, and never if it is
-        /// negative.
+        /// Shapes of one group other than 0 always collide if it is positive, and never if it is negative.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
@@ -116,28 +113,27 @@ records! {
         restitution_mixing: u32,
         /// Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
-        /// Acceleration in m/s² of bodies in the area, along the axes of the area's body.
+        /// Acceleration in m/s² of bodies in the area, along the axes of its body.
         area_acceleration: RawVec2,
-        /// Force in N per m² of the part of a body that is inside the area, along the axes of the area's body.
+        /// Force in N per m² of the covered part of a body, along the axes of the area's body.
         area_force: RawVec2,
-        /// Velocity of the medium in m/s relative to the area's body, along that body's axes.
+        /// Velocity of the medium in m/s in the frame of the area's body.
         area_flow: RawVec2,
-        /// Rate per second at which the velocity of bodies approaches that of the medium.
+        /// Rate per second at which velocities approach that of the medium.
         area_linear_drag: RawFx,
-        /// Rate per second at which the angular velocity of bodies approaches that of the medium.
+        /// Rate per second at which angular velocities approach that of the medium.
         area_angular_drag: RawFx,
         /// Density of the medium in kg/m², for buoyancy.
         area_density: RawFx,
-        /// Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`.
+        /// Acceleration in m/s² towards the centre of the area, at `attraction_radius`.
         attraction_acceleration: RawFx,
-        /// Distance in metres at which bodies have the acceleration `attraction_acceleration`. Nearer to the centre it
-        /// decreases linearly to 0.
+        /// Distance in metres with full attraction. Nearer to the centre it decreases linearly to 0.
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,
         /// Reserved: 0.
         reserved: u32,
-        /// A number for the game, part of the state.
+        /// A number for the game.
         user_data: u64,
     }
 }
@@ -270,7 +266,7 @@ impl RawShapeDef {
         }
     }
 
-    /// Converts and validates the geometry. The links of chains are validated by the world.
+    /// The world validates links of chains.
     pub(crate) fn geometry(&self) -> Outcome<Geometry> {
         check_size::<Self>(self.size)?;
         if self.kind != LINK {

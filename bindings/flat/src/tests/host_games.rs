@@ -1,4 +1,4 @@
-//! Recording and verifying a game with rules of its own, and seeking in its replay.
+//! Games with their own rules: recording, verification, seeking.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::*;
 const TICKS: u64 = 500;
 const PLAYERS: usize = 3;
 
-/// A weighted sum of the inputs of each player, and the number of absences, one for each tick and absent player.
+/// A weighted sum of the inputs of each player, and the number of absences.
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 struct Sums {
     sums: [u64; PLAYERS],
@@ -31,7 +31,7 @@ impl Sums {
     }
 }
 
-/// Inputs and absent players of a tick. They are the same for eight ticks; in some of these runs players are absent.
+/// Equal for eight ticks, with players absent in some of them.
 fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     let mut rng = Rng::new(tick / 8);
     let absent = u64::from(rng.next_u32() % 8) & u64::from(rng.next_u32());
@@ -44,7 +44,7 @@ fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     (inputs, absent)
 }
 
-/// A recording of a game with two claims, and its state after each tick.
+/// A recording with two claims, and the state after each tick.
 fn record(interval: u32) -> (Vec<u8>, Vec<Sums>) {
     let mut game = Sums::default();
     let (mut recorder, mut bytes) = (0, 0);
@@ -97,7 +97,6 @@ fn verdict(replay: u32, hash: RawHash) -> RawVerdict {
     verdict
 }
 
-/// Plays a replay from start to end with some claims.
 fn play(file: &[u8], claims: &[(&str, i64)]) -> u32 {
     let replay = open(file);
     let mut game = Sums::default();
@@ -140,7 +139,6 @@ fn claims_and_absent_players_are_recorded_and_verified() {
     done(ls2d_free(replay));
 }
 
-/// A game that fulfils the requests of a timeline.
 struct Player {
     replay: u32,
     game: Sums,
@@ -153,7 +151,7 @@ impl Player {
         Player { replay: open(file), game: Sums::default(), saves: BTreeMap::new(), played: 0 }
     }
 
-    /// Fulfils all requests on the way to a tick, and returns the last status.
+    /// Fulfils all requests, and returns the last status.
     fn seek(&mut self, tick: u64) -> i32 {
         done(ls2d_replay_seek(self.replay, tick));
         let mut request = RawRequest { kind: 99, tick: 0, absent: 0, guessed: 0 };
@@ -200,7 +198,7 @@ fn any_tick_is_reached_from_the_nearest_saved_state() {
             assert_eq!(player.seek(tick), Status::None as i32);
             assert_eq!(player.game, states[usize::try_from(tick).unwrap()], "tick {tick}");
             reached = reached.max(tick);
-            // Seeking plays the ticks that were never played before, and fewer than `interval` others.
+            // Ticks that were never played before, and fewer than `interval` others.
             let new = reached - from;
             assert!(
                 player.played - before < new + interval,

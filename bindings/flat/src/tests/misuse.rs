@@ -1,4 +1,4 @@
-//! Stale and unknown handles, a panic in the library, and the text of the last error.
+//! Wrong handles, a panic in the library, and the last error.
 
 use super::done;
 use crate::status::{Failure, Outcome};

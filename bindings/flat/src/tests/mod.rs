@@ -1,4 +1,4 @@
-//! Tests that use internal conversions, which foreign callers cannot call.
+//! Tests with internal conversions.
 #![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
 #[cfg(feature = "lockstep")]
@@ -11,7 +11,6 @@ use lockstep2d::hash::StateHash;
 
 use crate::{In, Out, RawHash, Status};
 
-/// Asserts that a call has succeeded.
 fn done(status: i32) {
     assert_eq!(status, Status::Ok as i32, "{}", crate::status::last_text());
 }
@@ -22,7 +21,7 @@ fn hash_of(world: u32) -> StateHash {
     hash.hash()
 }
 
-/// Copies the bytes of a bytes object, and frees the object.
+/// Copies the bytes and frees the object.
 fn take(bytes: u32) -> Vec<u8> {
     let mut size = 0;
     done(crate::ls2d_bytes_size(bytes, Out::of(&mut size)));
@@ -32,7 +31,6 @@ fn take(bytes: u32) -> Vec<u8> {
     copy
 }
 
-/// Makes a list of commands from encoded ones.
 fn list_of(encoded: &[u8]) -> u32 {
     let mut list = 0;
     done(crate::ls2d_commands_new(Out::of(&mut list)));

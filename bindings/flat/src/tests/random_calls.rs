@@ -1,5 +1,4 @@
-//! Random sequences of calls with random, often wrong arguments: no call fails in the library itself, and a repeated
-//! sequence gives equal codes and equal worlds.
+//! Random calls do not fail in the library itself, and a repeated sequence gives equal codes and worlds.
 
 use lockstep2d::math::Rng;
 

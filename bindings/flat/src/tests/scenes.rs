@@ -1,5 +1,4 @@
-//! Scenes of at most 2000 shapes, a recording and its replay, definitions, a character, bodies that are added with
-//! joints, and masses, mostly compared with the Rust API.
+//! Scenes, a replay, definitions, a character, joints and masses, mostly compared with the Rust API.
 
 use lockstep2d::body::{Geometry, MassProperties, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox};
@@ -17,7 +16,7 @@ fn game(scene: &Scene) -> Sandbox {
     Sandbox::new(&scene.setup(SEED)).unwrap()
 }
 
-/// Executes a command: common kinds through their functions with structs, all others as encoded bytes.
+/// Executes a command: common kinds through structs, others as encoded bytes.
 fn edit(target: u32, command: &Command) {
     let id = Out::null;
     match command {
@@ -64,7 +63,6 @@ fn edit(target: u32, command: &Command) {
     }
 }
 
-/// Builds the world of a scene from the structs of definitions.
 fn build(scene: &Scene) -> u32 {
     let setup = scene.setup(SEED);
     let mut world = 0;
@@ -121,7 +119,6 @@ fn a_recorded_scene_verifies_and_rolls_back() {
     [recording, commands].into_iter().for_each(|handle| done(ls2d_free(handle)));
 }
 
-/// Seeks back and forth in a replay that ends in the state of a game.
 fn seek(file: &[u8], end: &Sandbox) {
     let (mut timeline, mut verdict) =
         (0, RawVerdict { kind: 9, reserved: 0, ticks: 0, hash: RawHash { low: 0, high: 0 } });
@@ -171,7 +168,6 @@ fn definitions_survive_the_way_there_and_back() {
     }
 }
 
-/// A character moves as in Rust: on a lift, against a wall and over a step.
 #[test]
 fn a_character_moves_as_in_rust() {
     use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
@@ -232,7 +228,7 @@ fn a_character_moves_as_in_rust() {
     done(ls2d_free(world));
 }
 
-/// Handles are written in order; a short buffer or a wrong body adds nothing.
+/// A short buffer or a wrong body adds nothing.
 #[test]
 fn bodies_and_joints_are_added_together_or_not_at_all() {
     let mut world = 0;

@@ -2,8 +2,8 @@
 //
 //     node peer.mjs URL CODE KEY [--pause-at TICK] [--quit-at TICK] [-o FILE]
 //
-// Prints a line of JSON when it starts to play, and one at the end. `--pause-at` stops for five seconds, like a page in
-// the background; `--quit-at` ends the process without leaving the match, like a closed page.
+// Prints a line of JSON when it starts to play, and one at the end. `--pause-at` stops for five seconds; `--quit-at`
+// ends the process without leaving the match.
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { register } from "node:module";

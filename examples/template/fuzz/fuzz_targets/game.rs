@@ -1,5 +1,4 @@
-//! Plays arbitrary inputs in all variants that must lead to the same states. A panic of the game or of the check is a
-//! finding.
+//! Plays arbitrary inputs in all variants of the determinism check.
 #![no_main]
 
 use std::fs;
@@ -8,9 +7,8 @@ use libfuzzer_sys::fuzz_target;
 use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use my_game::{MyGame, Setup};
 
-/// Number of players of the game.
 const PLAYERS: u32 = 2;
-/// Largest number of ticks of an input log. Longer logs are slower and rarely find more.
+/// Longer logs are slower and rarely find more.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

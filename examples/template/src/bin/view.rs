@@ -1,7 +1,7 @@
 //! The game in a window: `cargo run`, or `cargo run -- match.replay`. Two people play at one keyboard, or two processes
 //! with `--host 0.0.0.0:7000` and `--join 127.0.0.1:7000`.
 
-// Drawing may use floats, which the lints refuse in the rules.
+// Drawing may use floats.
 #![allow(clippy::disallowed_methods, clippy::disallowed_types, clippy::float_arithmetic)]
 
 use lockstep2d::peer::PeerOptions;

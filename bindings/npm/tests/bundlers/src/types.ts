@@ -1,4 +1,4 @@
-// Compiled, and not run: the types of handles, matches, relays and replays.
+// Compiled, not run.
 import {
     type BodyId, Commands, type JointId, type Lockstep2dError, Match, MatchDriver, type MatchGame, type MoverState, Recorder,
     Recording, Relay, Replay, ReplayDriver, type ShapeId, type Snapshot, World, box, decodeNativeState, degrees, encodeNativeState,
