@@ -42,7 +42,7 @@ typedef uint32_t ls2d_handle;
 
 /* The function has succeeded. */
 #define LS2D_OK 0
-/* There is nothing to return: no hit, no packet, no event, no further item. Not an error. */
+/* There is nothing to return, which is not an error. */
 #define LS2D_NONE 1
 /* A pointer that must not be null is null. */
 #define LS2D_NULL 2
@@ -54,17 +54,17 @@ typedef uint32_t ls2d_handle;
 #define LS2D_HANDLE_KIND 5
 /* The `size` of a struct does not match this version of the library. */
 #define LS2D_SIZE 6
-/* An argument is out of its range, for example a kind, flag, count or tick; or the call is not possible now. */
+/* An argument is out of its range, or the call is not possible at this time. */
 #define LS2D_VALUE 7
-/* The buffer is too short. If the function has a pointer for the number of items, the number needed was written. */
+/* The buffer is too short. The number of items needed was written, if the function writes it. */
 #define LS2D_BUFFER 8
-/* A text is invalid, for example not UTF-8 or not a number. */
+/* A text is invalid, for example not UTF-8. */
 #define LS2D_TEXT 9
 /* A result has no value: division by zero, root of a negative number. */
 #define LS2D_NUMBER 10
-/* An error in the library itself. The objects that the call used are unusable afterwards. */
+/* An error in the library. The objects of the call are unusable. */
 #define LS2D_INTERNAL 11
-/* An earlier `LS2D_INTERNAL` has left the object unusable. It can only be freed. */
+/* `LS2D_INTERNAL` has left the object unusable. It can be freed. */
 #define LS2D_BROKEN 12
 /* There are too many objects. */
 #define LS2D_EXHAUSTED 13
@@ -104,7 +104,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_JOINT_BODIES 35
 /* The joint has no such part. */
 #define LS2D_JOINT_PART 36
-/* A property of a joint is out of range, or its lower limit is above the upper one. */
+/* A property of a joint is out of range, or its limits are reversed. */
 #define LS2D_JOINT 37
 /* A setting of the world or a property of an explosion is out of range. */
 #define LS2D_SETTING 38
@@ -112,7 +112,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FIXED_SETTING 39
 /* A name is not 1 to 16 ASCII letters, digits, `-` and `_`. */
 #define LS2D_NAME 40
-/* The largest number of bodies, shapes or joints of the world, or of shapes of a body, would be exceeded. */
+/* The world would have too many bodies, shapes or joints, or a body too many shapes. */
 #define LS2D_FULL 41
 /* The kind of the body does not allow the change. */
 #define LS2D_WRONG_KIND 42
@@ -127,12 +127,12 @@ typedef uint32_t ls2d_handle;
 /* This peer does not take part in the match yet. */
 #define LS2D_NOT_IN_MATCH 62
 
-/* A number of metres, seconds, kilograms and so on, in units of 2^-32: 1 is 4294967296. */
+/* A number in units of 2^-32: 1 is 4294967296. */
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
- * slot. Less than 2^53, so that a JavaScript number represents it exactly; only `LS2D_NO_ID` is larger. */
+/* A body of a world. The lowest 21 bits are its slot, the others count earlier bodies in that slot. Less than
+ * 2^53, so that a JavaScript number is exact, except for `LS2D_NO_ID`. */
 typedef uint64_t ls2d_body;
 /* A shape of a world, encoded like a body. */
 typedef uint64_t ls2d_shape;
@@ -157,7 +157,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_BODY_LOCK_ROTATION 16
 /* Flag of a body: may fall asleep. */
 #define LS2D_BODY_MAY_SLEEP 32
-/* Flag of a body: its mass is given, not computed from its shapes. */
+/* Flag of a body: its mass is given instead of computed from its shapes. */
 #define LS2D_BODY_GIVEN_MASS 64
 /* `ls2d_body_def.continuous`: swept against nothing. */
 #define LS2D_SWEEP_OFF 0
@@ -169,11 +169,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SWEEP_KINEMATIC 3
 /* `ls2d_mover_state.flags`: the character stands on ground. */
 #define LS2D_MOVER_ON_GROUND 1
-/* `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on. */
+/* `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
-/* `ls2d_config.flags`: fast bodies are swept against shapes that they might pass through. */
+/* `ls2d_config.flags`: fast bodies are swept so that they do not pass through shapes. */
 #define LS2D_CONTINUOUS 2
 /* `ls2d_config.contact`: contacts are soft springs. */
 #define LS2D_CONTACT_SOFT 0
@@ -220,7 +220,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_THRESHOLD_FORCE 256
 /* Flag of a joint: has `threshold_torque`. */
 #define LS2D_JOINT_THRESHOLD_TORQUE 512
-/* Flag of a joint: breaks beyond a threshold, instead of only being reported. */
+/* Flag of a joint: breaks beyond a threshold. */
 #define LS2D_JOINT_BREAKS 1024
 /* Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor). */
 #define LS2D_JOINT_LINEAR_MOTOR 2048
@@ -228,11 +228,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_LINEAR_SPRING 4096
 /* Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, for a motor, `angular_max` (weld, motor). */
 #define LS2D_JOINT_ANGULAR_SPRING 8192
-/* Verdict: the setup and the inputs reproduce every checkpoint and the trailer of the file. */
+/* Verdict: setup and inputs reproduce every checkpoint and the trailer. */
 #define LS2D_MATCH 0
-/* Verdict: a claim or the final hash in the trailer differs from the result of the simulation. */
+/* Verdict: a claim or the final hash in the trailer differs from the simulation. */
 #define LS2D_CLAIM_MISMATCH 1
-/* Verdict: the simulation diverges from the recorded game. */
+/* Verdict: the simulation diverges from the checkpoints. */
 #define LS2D_DIVERGED 2
 /* Verdict: the file ends before its trailer. */
 #define LS2D_INCOMPLETE 3
@@ -240,29 +240,29 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MALFORMED 4
 /* Verdict: the file exceeds one of the limits. */
 #define LS2D_LIMIT_EXCEEDED 5
-/* Verdict: recorded by another version of the engine, or with other rules. */
+/* Verdict: recorded with another version of the engine, or other rules. */
 #define LS2D_UNVERIFIABLE 6
-/* Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced. */
+/* Request: keep a copy of the state before `tick`. It replaces an older one for the same tick. */
 #define LS2D_REQUEST_SAVE 0
-/* Request: restore the copy of the state before `tick`. Only a replay may request later copies again. */
+/* Request: restore the copy of the state before `tick`. In a match, later copies are not requested again. */
 #define LS2D_REQUEST_LOAD 1
 /* Request: simulate `tick` with the inputs. */
 #define LS2D_REQUEST_ADVANCE 2
-/* Request of a match: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. Request of
- * a replay: pass the hash of the current state to `ls2d_replay_check`. */
+/* Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
+ * hash of the current state to `ls2d_replay_check`. */
 #define LS2D_REQUEST_CHECKSUM 3
-/* Request: copies of states before `tick` are no longer needed. */
+/* Request: copies of states before `tick` are not needed. */
 #define LS2D_REQUEST_FORGET 4
-/* Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. For `LS2D_MATCH_FINISHED`,
- * `tick` is the number of ticks of the match. */
+/* Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
+ * ticks. */
 #define LS2D_EVENT_STATUS 0
-/* Event: the voters, the seats, or the start or end of the match have changed; `value` counts the changes. */
+/* Event: voters, seats, start or end of the match have changed. `value` counts the changes. */
 #define LS2D_EVENT_VIEW 1
 /* Event: `peer` has `seat` from `tick` on. */
 #define LS2D_EVENT_SEATED 2
-/* Event: `peer` no longer has `seat` from `tick` on. */
+/* Event: `peer` loses `seat` at `tick`. */
 #define LS2D_EVENT_UNSEATED 3
-/* Event: play stalls because inputs of `peer` are missing; `value` is 1 if it is heard, also through other peers. */
+/* Event: play stalls for inputs of `peer`. `value` is 1 if it is heard, also through other peers. */
 #define LS2D_EVENT_WAITING 4
 /* Event: play continues. */
 #define LS2D_EVENT_RESUMED 5
@@ -270,16 +270,16 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_PAUSE 6
 /* Event: the match ends after `tick` ticks. */
 #define LS2D_EVENT_END 7
-/* Event: after `tick` ticks, `peer` has a different state; the hashes are `ours` and `theirs`. */
+/* Event: after `tick` ticks, `peer` has a different state, with the hashes `ours` and `theirs`. */
 #define LS2D_EVENT_DESYNC 8
 /* Event: `peer` has issued two different inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the other peers no longer keep the inputs that this peer lacks; it has to join again. */
+/* Event: the other peers do not keep the inputs that this peer lacks. It has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
 /* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
 /* Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
- * The game has to restore it before it fulfils further requests. */
+ * Restore it before the next request. */
 #define LS2D_EVENT_STATE 12
 /* Event: the downloaded bytes are not a valid state; they are requested again. */
 #define LS2D_EVENT_BAD_STATE 13
@@ -295,17 +295,17 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_JOINING 0
 /* Status: follows the match. */
 #define LS2D_MATCH_WATCHING 1
-/* Status: has a seat, or is a dedicated server, in a match that has not begun, because too few seats are taken. */
+/* Status: has a seat, or is a dedicated server, and waits for the start. */
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
-/* Status: hears from no majority of the peers, directly or through other peers. */
+/* Status: hears no majority of the peers, directly or through others. */
 #define LS2D_MATCH_PAUSED 4
 /* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
 /* Status: removed for good. */
 #define LS2D_MATCH_KICKED 6
-/* Status: announces its departure to the other peers. */
+/* Status: announces its departure. */
 #define LS2D_MATCH_LEAVING 7
 /* Status: has left. */
 #define LS2D_MATCH_LEFT 8
@@ -317,7 +317,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_CONNECTING 11
 /* `ls2d_query_filter.flags`: the query sees sensors. */
 #define LS2D_QUERY_SENSORS 1
-/* Rays report shapes that they start in; casts report only those into which they would move deeper. */
+/* Rays report shapes that they start in. Casts report those into which they would move deeper. */
 #define LS2D_OVERLAP_RESIST 0
 /* Rays and casts report shapes that they start in. */
 #define LS2D_OVERLAP_REPORT 1
@@ -331,13 +331,12 @@ typedef uint64_t ls2d_joint;
 #define LS2D_POLYGON 2
 /* Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`. */
 #define LS2D_CAPSULE 3
-/* Kind of a shape: a link of a chain from `points[0]` to `points[1]`; the neighbours' far ends are `points[2]` and
- * `points[3]`. `ls2d_chain_links` makes them. */
+/* Kind of a shape: a link of a chain from `points[0]` to `points[1]`, made by `ls2d_chain_links`. The far ends of
+ * its neighbours are `points[2]` and `points[3]`. */
 #define LS2D_LINK 4
 /* Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`. */
 #define LS2D_HULL 5
-/* Kind of a shape: a rectangle with the half width `points[0].x` and the half height `points[0].y`, rounded by
- * `radius`. */
+/* Kind of a shape: a rectangle of half width `points[0].x` and half height `points[0].y`, rounded by `radius`. */
 #define LS2D_RECTANGLE 6
 /* Flag of a shape: detects overlaps, and does not collide. */
 #define LS2D_SHAPE_SENSOR 1
@@ -345,7 +344,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_ONE_WAY 2
 /* Flag of a shape: has its own `restitution_threshold`. */
 #define LS2D_SHAPE_RESTITUTION_THRESHOLD 4
-/* Flag of a shape: a sensor that acts on the bodies in it. */
+/* Flag of a shape: a sensor that acts on bodies in it. */
 #define LS2D_SHAPE_AREA 8
 /* Flag of a shape: the area attracts bodies to its centre. */
 #define LS2D_SHAPE_ATTRACTION 16
@@ -361,10 +360,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_BEFORE 512
 /* Flag of a link: it has a neighbour after `points[1]`. */
 #define LS2D_SHAPE_LINK_AFTER 1024
-/* Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`. */
+/* Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing: the mean of both values. If the rules of two shapes differ, the rule with the larger number
- * applies. */
+/* Rule of mixing: the mean. Of two rules, the larger number applies. */
 #define LS2D_MIX_AVERAGE 0
 /* Rule of mixing: the square root of the product. */
 #define LS2D_MIX_GEOMETRIC_MEAN 1
@@ -374,11 +372,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MIX_PRODUCT 3
 /* Rule of mixing: the larger value. */
 #define LS2D_MIX_MAXIMUM 4
-/* Attraction that is the same at all distances beyond `attraction_radius`. */
+/* Attraction that is constant beyond `attraction_radius`. */
 #define LS2D_FALLOFF_CONSTANT 0
-/* Attraction that is inversely proportional to the distance beyond `attraction_radius`. */
+/* Attraction that decreases with the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE 1
-/* Attraction that is inversely proportional to the square of the distance beyond `attraction_radius`. */
+/* Attraction that decreases with the square of the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE_SQUARE 2
 
 /* A point or a vector. */
@@ -421,9 +419,9 @@ typedef struct ls2d_config {
     uint32_t contact;
     /* Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
     uint32_t flags;
-    /* Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step. */
+    /* Stiffness of soft contacts in Hz, or share of the overlap corrected in each sub-step. */
     ls2d_fx contact_stiffness;
-    /* Damping ratio of soft contacts, or overlap in metres that Baumgarte contacts leave uncorrected. */
+    /* Damping ratio of soft contacts, or overlap in metres that is not corrected. */
     ls2d_fx contact_damping;
     /* Largest speed in m/s with which contacts push shapes apart. */
     ls2d_fx contact_push_speed;
@@ -435,8 +433,7 @@ typedef struct ls2d_config {
     ls2d_fx restitution_threshold;
     /* Largest speed of a body in m/s. */
     ls2d_fx speed_max;
-    /* Distance in metres at which shapes get contact points before they touch. Pairs that approach each other have
-     * a larger distance. */
+    /* Distance in metres at which shapes get contact points, more if they approach each other. */
     ls2d_fx speculative_distance;
     /* Largest margin in metres of the bounding boxes in the broad phase. */
     ls2d_fx fat_margin;
@@ -460,7 +457,7 @@ typedef struct ls2d_body_def {
     uint32_t kind;
     /* `LS2D_BODY_` flags. */
     uint32_t flags;
-    /* `LS2D_SWEEP_OFF` and so on: the bodies through which this body cannot tunnel. */
+    /* `LS2D_SWEEP_OFF` and so on. */
     uint32_t continuous;
     /* Origin in the world, in metres. */
     ls2d_vec2 position;
@@ -486,7 +483,7 @@ typedef struct ls2d_body_def {
     ls2d_fx gravity_scale;
     /* Speed in m/s below which the body becomes ready to sleep. */
     ls2d_fx sleep_speed;
-    /* A number for the game, part of the state. */
+    /* A number for the game. */
     uint64_t user_data;
     /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros; empty for none. */
     uint8_t name[16];
@@ -514,7 +511,7 @@ typedef struct ls2d_body_info {
     ls2d_fx mass;
     /* Moment of inertia about the centre of mass in kg m². */
     ls2d_fx inertia;
-    /* Number that the game stores with the body. */
+    /* The game's number. */
     uint64_t user_data;
     /* Decay rate of the velocity, per second. */
     ls2d_fx linear_damping;
@@ -524,7 +521,7 @@ typedef struct ls2d_body_info {
     ls2d_fx gravity_scale;
     /* Speed in m/s below which the body becomes ready to sleep. */
     ls2d_fx sleep_speed;
-    /* An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel. */
+    /* An `LS2D_SWEEP_` constant. */
     uint32_t continuous;
     /* Reserved: 0. */
     uint32_t reserved;
@@ -592,8 +589,7 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Shapes with the same group other than 0 always collide if the number is positive, and never if it is
-     * negative. */
+    /* Shapes of one group other than 0 always collide if it is positive, and never if it is negative. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
@@ -601,33 +597,32 @@ typedef struct ls2d_shape_def {
     uint32_t restitution_mixing;
     /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
-    /* Acceleration in m/s² of bodies in the area, along the axes of the area's body. */
+    /* Acceleration in m/s² of bodies in the area, along the axes of its body. */
     ls2d_vec2 area_acceleration;
-    /* Force in N per m² of the part of a body that is inside the area, along the axes of the area's body. */
+    /* Force in N per m² of the covered part of a body, along the axes of the area's body. */
     ls2d_vec2 area_force;
-    /* Velocity of the medium in m/s relative to the area's body, along that body's axes. */
+    /* Velocity of the medium in m/s in the frame of the area's body. */
     ls2d_vec2 area_flow;
-    /* Rate per second at which the velocity of bodies approaches that of the medium. */
+    /* Rate per second at which velocities approach that of the medium. */
     ls2d_fx area_linear_drag;
-    /* Rate per second at which the angular velocity of bodies approaches that of the medium. */
+    /* Rate per second at which angular velocities approach that of the medium. */
     ls2d_fx area_angular_drag;
     /* Density of the medium in kg/m², for buoyancy. */
     ls2d_fx area_density;
-    /* Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`. */
+    /* Acceleration in m/s² towards the centre of the area, at `attraction_radius`. */
     ls2d_fx attraction_acceleration;
-    /* Distance in metres at which bodies have the acceleration `attraction_acceleration`. Nearer to the centre it
-     * decreases linearly to 0. */
+    /* Distance in metres with full attraction. Nearer to the centre it decreases linearly to 0. */
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
     /* Reserved: 0. */
     uint32_t reserved;
-    /* A number for the game, part of the state. */
+    /* A number for the game. */
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
- * read only if that flag is set, except for `length`, which a pulley reads without a flag. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named by a flag is read only with that
+ * flag, except that a pulley reads `length`. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -705,11 +700,11 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 wheel_b;
     /* Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`. */
     ls2d_fx ratio;
-    /* A number for the game, part of the state. */
+    /* A number for the game. */
     uint64_t user_data;
 } ls2d_joint_def;
 
-/* Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`. */
+/* Selects the shapes that a query sees. Null stands for the defaults of `ls2d_query_filter_init`. */
 typedef struct ls2d_query_filter {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -803,7 +798,7 @@ typedef struct ls2d_mover {
     ls2d_angle slope_max;
     /* Height in metres of steps that it climbs without a jump. */
     ls2d_fx step_height;
-    /* Distance in metres by which the ground may descend within a tick while the character follows it. */
+    /* Distance in metres by which ground may descend within a tick while the character follows it. */
     ls2d_fx snap_distance;
     /* Its geometry; other fields of the definition have no effect. */
     ls2d_shape_def shape;
@@ -815,7 +810,7 @@ typedef struct ls2d_mover_plane {
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
-    /* Position of the body's origin in the world when the surface was met, in metres. */
+    /* Position of the body's origin at that time, in metres. */
     ls2d_vec2 body_position;
     /* Velocity of the surface in m/s. */
     ls2d_vec2 velocity;
@@ -825,13 +820,13 @@ typedef struct ls2d_mover_plane {
     ls2d_vec2 point;
     /* Distance of the character from the surface in metres, negative if they overlap. */
     ls2d_fx separation;
-    /* Rotation of the body when the surface was met. */
+    /* Rotation of the body at that time. */
     ls2d_angle body_angle;
     /* Reserved: 0. */
     uint32_t reserved;
 } ls2d_mover_plane;
 
-/* State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first state. */
+/* State of a character, to be kept by the game. `ls2d_mover_state_init` sets the first state. */
 typedef struct ls2d_mover_state {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -869,7 +864,7 @@ typedef struct ls2d_hit_event {
     ls2d_fx impulse;
 } ls2d_hit_event;
 
-/* A sensor that began or ceased to overlap a shape. A handle is stale if its shape was removed. */
+/* A sensor and a shape that began or ceased to overlap. A handle is stale if its shape was removed. */
 typedef struct ls2d_sensor_event {
     /* The sensor. */
     ls2d_shape sensor;
@@ -917,14 +912,14 @@ typedef struct ls2d_limits {
     uint64_t total_work;
 } ls2d_limits;
 
-/* Result of verifying a replay. Only `LS2D_MATCH` means that the file is valid. */
+/* Result of verifying a replay. Any other verdict than `LS2D_MATCH` is a failure. */
 typedef struct ls2d_verdict {
     /* `LS2D_MATCH` and so on. */
     uint32_t kind;
     /* Reserved: 0. */
     uint32_t reserved;
-    /* Number of ticks that were played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; for
-     * `LS2D_DIVERGED`, the tick of the first checkpoint that differs; otherwise 0. */
+    /* Number of ticks played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; tick of the first
+     * checkpoint that differs, for `LS2D_DIVERGED`; otherwise 0. */
     uint64_t ticks;
     /* Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0. */
     ls2d_hash hash;
@@ -956,22 +951,21 @@ typedef struct ls2d_match_config {
     uint32_t check_interval;
     /* Number of ticks that may be played beyond the last final one. */
     uint32_t history;
-    /* Minimum number of final ticks whose inputs are kept for peers that return. */
+    /* Minimum number of final ticks whose inputs are kept. */
     uint32_t log_ticks;
-    /* Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins. */
+    /* Number of ticks from the effect of a join to the first tick of the peer. */
     uint32_t seat_lead;
     /* A peer that lags by at most this many ticks may have a seat. */
     uint32_t seat_within;
-    /* Number of this peer: random, new for each process. */
+    /* Random number of this peer, new for each process. */
     uint32_t peer;
     /* Tag of the match: packets with another tag are ignored. */
     uint64_t match_tag;
-    /* Time in microseconds for which play stalls because of a missing peer before the other peers go on without
-     * it. */
+    /* Time in microseconds for which play stalls for a missing peer before the others go on. */
     uint64_t patience;
-    /* Identity of the player: a peer that joins again with the same key gets its seat back. */
+    /* Identity of the player: a peer that joins with the same key gets its seat back. */
     uint64_t key;
-    /* Secret random numbers, which protect against packets with forged addresses. */
+    /* Secret random numbers, against packets with forged addresses. */
     uint64_t secret[2];
 } ls2d_match_config;
 
@@ -1009,17 +1003,17 @@ typedef struct ls2d_match_event {
 
 /* ---- The library ---- */
 
-/* Version of this API. It has to be equal to `LS2D_API_VERSION` of the header. */
+/* Version of this API, to be equal to `LS2D_API_VERSION` of the header. */
 uint32_t ls2d_api_version(void);
 
 /* Version of the engine's arithmetic: programs with different versions compute different states. */
 uint32_t ls2d_semantics(void);
 
-/* Copies the text of the last failure or verdict on this thread as UTF-8, and writes its length in bytes. The text
- * is not terminated by a zero. If the buffer is shorter, the text is cut. */
+/* Copies the text of the last failure or verdict on this thread as UTF-8 without a final zero, cut to the buffer.
+ * Writes the length of the whole text in bytes. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
-/* Frees an object of any kind. Afterwards every use of its handle is an error, including freeing it again. */
+/* Frees an object of any kind. Every later use of its handle is an error. */
 ls2d_status ls2d_free(uint32_t handle);
 
 /* Number of objects that have not been freed, to find leaks. */
@@ -1034,9 +1028,8 @@ ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 /* Makes a bytes object with a copy of some bytes. */
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
-/* Returns the address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory. It is
- * for callers that cannot allocate memory, such as JavaScript. Each thread has one such buffer; a call with a
- * larger size may move it and keeps its contents. */
+/* Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
+ * cannot allocate memory. Each thread has one such buffer. A larger size may move it and keeps its contents. */
 size_t ls2d_scratch(size_t size);
 
 /* ---- Worlds ---- */
@@ -1044,9 +1037,9 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
- * by less than 2.5 % of a box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative
- * distance to a fiftieth of `size`, but not below 1 mm. Call it after gravity and the tick rate are set. */
+/* Adapts sub-steps and contact stiffness so that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a
+ * box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative distance to a fiftieth of
+ * `size`, but not below 1 mm. Set gravity and the tick rate before. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1058,11 +1051,10 @@ ls2d_status ls2d_world_clone(uint32_t world, uint32_t *copy);
 /* Advances a world by one tick. */
 ls2d_status ls2d_world_step(uint32_t world);
 
-/* Advances a world by some ticks. Only the events of the last one are kept. */
+/* Advances a world by some ticks, and keeps the events of the last one. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state of a world. The same settings, edits and ticks in the same order give the same hash on every
- * machine. */
+/* Hash of the state. Equal settings, edits and ticks in the same order give equal hashes on every machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
 /* Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
@@ -1072,8 +1064,8 @@ ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash)
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of results of the solver that were clamped since the world was made, plus one for every tick in which
- * `pair_limit` left pairs out. A body at the speed limit does not count. */
+/* Number of clamped results of the solver since the world was made, plus one for every tick in which `pair_limit`
+ * left pairs out. A body at the speed limit does not count. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */
@@ -1082,16 +1074,16 @@ ls2d_status ls2d_world_config(uint32_t world, ls2d_config *config);
 /* Numbers of bodies, shapes, joints, awake bodies, and pairs of near shapes. Null pointers are not written. */
 ls2d_status ls2d_world_counts(uint32_t world, size_t *bodies, size_t *shapes, size_t *joints, size_t *awake, size_t *pairs);
 
-/* Draws a uniform number of 32 bits from the world's generator, which is part of the state. */
+/* Draws a number of 32 bits from the world's generator, which is part of the state. */
 ls2d_status ls2d_world_random(uint32_t world, uint32_t *number);
 
-/* Draws a uniform number from 0 to below `bound` from the world's generator. */
+/* Draws a uniform number below `bound` from the world's generator. */
 ls2d_status ls2d_world_random_below(uint32_t world, uint32_t bound, uint32_t *number);
 
 /* Draws a uniform number from `low` to below `high` from the world's generator. */
 ls2d_status ls2d_world_random_range(uint32_t world, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
-/* Drops the caches of a world. Does not change any hash; the next tick takes longer. */
+/* Drops the caches of a world, which does not change its hash. */
 ls2d_status ls2d_world_clear_scratch(uint32_t world);
 
 /* ---- Definitions ---- */
@@ -1105,13 +1097,12 @@ ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 /* Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID`. */
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
-/* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
- * `one_sided` is not 0. The links have all properties of `base` except its geometry. */
+/* Makes the links of a chain through some points: closed if `closed` is not 0, solid from the right only if
+ * `one_sided` is not 0. The other properties are those of `base`. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
-/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
- * `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has both an area
- * and a density. */
+/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, as in a definition. Null
+ * pointers are not written. At least one shape must have both an area and a density. */
 ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
 
 /* ---- Edits of a world, or of a list of commands ---- */
@@ -1125,22 +1116,22 @@ ls2d_status ls2d_commands_clear(uint32_t commands);
 /* Number of commands in a list. */
 ls2d_status ls2d_commands_count(uint32_t commands, size_t *count);
 
-/* Encodes a list of commands as bytes, for networks and files. */
+/* Encodes a list of commands as bytes. */
 ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
 
-/* Replaces a list of commands by an encoded one, from any source. */
+/* Replaces a list of commands by an encoded one, which may come from any source. */
 ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
 
-/* Executes a list of commands in order. Commands that the world refuses are skipped; their number is written to
- * `refused` unless it is null. */
+/* Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`
+ * unless it is null. */
 ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
 
 /* Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
 
-/* Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
- * definition once. Bodies and flags of the poses are not read. The handles are written, unless the pointer is null
- * or the target is a list. */
+/* Adds a body with one definition at each pose, or none if one is refused. A recording stores the definition once.
+ * Bodies and flags of the poses are not read. The handles are written, unless the pointer is null or the target is
+ * a list. */
 ls2d_status ls2d_spawn_each(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, const ls2d_pose *poses, size_t pose_count, ls2d_body *ids, size_t capacity);
 
 /* Removes a body with its shapes and joints. */
@@ -1158,21 +1149,21 @@ ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_d
 /* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
 
-/* Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A
- * recording stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles
- * are written, unless the pointer is null or the target is a list. */
+/* Adds a joint with one definition between each pair of bodies, or none if one is refused. A recording stores the
+ * definition once. `ends` has the two bodies of each joint in turn. The handles are written, unless the pointer is
+ * null or the target is a list. */
 ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
 ls2d_status ls2d_remove_joint(uint32_t target, ls2d_joint joint);
 
-/* Changes a joint. Its bodies have to stay the same. */
+/* Changes a joint, but not its bodies. */
 ls2d_status ls2d_set_joint(uint32_t target, ls2d_joint joint, const ls2d_joint_def *def);
 
 /* Enables a joint. */
 ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
 
-/* Disables a joint: it stays in the world without effect. */
+/* Disables a joint, which stays in the world. */
 ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
 
 /* Applies a force in N to a body during the next tick, at a point of the world in metres. */
@@ -1181,10 +1172,10 @@ ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, l
 /* Applies a torque in N m to a body during the next tick. */
 ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
 
-/* Changes the velocity of a body by an impulse in N s at a point of the world, in metres. */
+/* Applies an impulse in N s to a body at a point of the world in metres. */
 ls2d_status ls2d_apply_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse_x, ls2d_fx impulse_y, ls2d_fx x, ls2d_fx y);
 
-/* Changes the angular velocity of a body by an angular impulse in N m s. */
+/* Applies an angular impulse in N m s to a body. */
 ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse);
 
 /* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */
@@ -1193,11 +1184,10 @@ ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_f
 /* Sets the position of a body's origin in metres, and its angle. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Gives a kinematic body the velocity with which it reaches a pose in the next tick. */
+/* Moves a kinematic body to a pose during the next tick. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
- * `ls2d_body_get` returns the current settings. */
+/* Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect. */
 ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Changes the kind of a body. */
@@ -1209,7 +1199,7 @@ ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *
 /* Sets the number that the game stores with a body. */
 ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_data);
 
-/* Sets the name of a body, of at most 16 bytes. A length of 0 removes the name. */
+/* Sets the name of a body. A length of 0 removes it. */
 ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
 
 /* Lets a body take part in the simulation. */
@@ -1221,13 +1211,13 @@ ls2d_status ls2d_disable(uint32_t target, ls2d_body body);
 /* Wakes a body. */
 ls2d_status ls2d_wake(uint32_t target, ls2d_body body);
 
-/* Puts a dynamic body to sleep, with all dynamic bodies that contacts and joints connect it to. */
+/* Puts a dynamic body to sleep, with the dynamic bodies that contacts and joints connect it to. */
 ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 
 /* Sets the gravity in m/s². */
 ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
 
-/* Changes the settings of the world. Its limits have to stay the same. */
+/* Changes the settings of a world, but not its limits. */
 ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
 
 /* Applies impulses away from a point. */
@@ -1253,16 +1243,16 @@ ls2d_status ls2d_body_shapes(uint32_t world, ls2d_body id, ls2d_shape *shapes, s
 /* Joints of a body in slot order. */
 ls2d_status ls2d_body_joints(uint32_t world, ls2d_body id, ls2d_joint *joints, size_t capacity, size_t *count);
 
-/* Name of a body: 16 bytes, padded with zeros; all zeros if it has no name. */
+/* Name of a body: 16 bytes, padded with zeros. */
 ls2d_status ls2d_body_name(uint32_t world, ls2d_body id, uint8_t *name);
 
-/* Velocity in m/s of the material point of a body at a point of the world. */
+/* Velocity in m/s of a body at a point of the world. */
 ls2d_status ls2d_body_velocity_at(uint32_t world, ls2d_body id, ls2d_fx x, ls2d_fx y, ls2d_vec2 *velocity);
 
 /* Definition of a shape and its body. */
 ls2d_status ls2d_shape_get(uint32_t world, ls2d_shape id, ls2d_shape_def *def, ls2d_body *owner);
 
-/* An axis-aligned box around a shape with some margin, in world coordinates. */
+/* An axis-aligned box around a shape, with a margin. */
 ls2d_status ls2d_shape_box(uint32_t world, ls2d_shape id, ls2d_aabb *area);
 
 /* Shapes that a sensor overlaps, in slot order. */
@@ -1280,17 +1270,17 @@ ls2d_status ls2d_joint_anchors(uint32_t world, ls2d_joint id, ls2d_vec2 *a, ls2d
 /* Angle of a joint in rad, including whole turns. */
 ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 
-/* Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor. */
+/* Force in N of a joint on body B in the last sub-step, and torque in N m about B's anchor. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Sets the anchors and angles of a definition for the current poses of the bodies: the anchor at a point of the
- * world, and the axis along a direction in the world. A direction of zero is the x axis. */
+/* Sets the anchors and angles of a definition for the current poses: the anchor at a point of the world, the axis
+ * along a direction in the world. A direction of zero is the x axis. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
 
-/* Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle
- * in rad, and 1 if it is awake, otherwise 0. `capacity` and `count` are numbers of `double`s. */
+/* Poses of all enabled bodies in slot order, for drawing, five numbers each: handle, x, y, angle in rad, and 1 if
+ * awake, otherwise 0. `capacity` and `count` are numbers of `double`s. */
 ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_t *count);
 
 /* ---- Events of the last tick ---- */
@@ -1304,8 +1294,8 @@ ls2d_status ls2d_events_contact_begin(uint32_t world, ls2d_contact_event *events
 /* Pairs of shapes that ceased to touch, sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
 
-/* Pairs of shapes that hit each other, sorted by shape A, then by shape B. A pair reports hits if at least one of
- * its shapes has `LS2D_SHAPE_HIT_EVENTS`. */
+/* Pairs of shapes that hit each other, sorted by shape A, then by shape B, if one of them has
+ * `LS2D_SHAPE_HIT_EVENTS`. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
 /* Shapes that began to overlap a sensor, sorted by `fraction`. */
@@ -1319,19 +1309,19 @@ ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t 
 
 /* ---- Queries ---- */
 
-/* Sets the defaults of a query: it sees everything except sensors. */
+/* Sets the defaults of a query, which does not see sensors. */
 ls2d_status ls2d_query_filter_init(ls2d_query_filter *filter);
 
 /* Sets the defaults of a probe with a shape of the given kind, at the origin. */
 ls2d_status ls2d_probe_init(uint32_t kind, ls2d_probe *probe);
 
-/* The first shape that a ray meets, from a point along a translation in metres. `LS2D_NONE` without a hit. */
+/* The first shape that a ray meets on a translation in metres from a point. `LS2D_NONE` without a hit. */
 ls2d_status ls2d_cast_ray(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hit);
 
 /* Every shape that a ray meets, in order along the ray. */
 ls2d_status ls2d_cast_ray_all(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hits, size_t capacity, size_t *count);
 
-/* The first shape that a probe meets as it moves along a translation in metres. `LS2D_NONE` without a hit. */
+/* The first shape that a probe meets on a translation in metres. `LS2D_NONE` without a hit. */
 ls2d_status ls2d_cast_shape(uint32_t world, const ls2d_probe *probe, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_cast_hit *hit);
 
 /* Shapes that overlap a probe, in slot order. */
@@ -1346,23 +1336,22 @@ ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
-/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world, or its
- * body is disabled. */
+/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world or
+ * disabled. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
 
 /* ---- Characters ---- */
 
-/* Sets the defaults of a character with a shape of the given kind, whose geometry has to be set. The character
- * stands on slopes up to 45 degrees, climbs no steps, and follows ground that falls by up to 0.1 m in a tick. */
+/* Sets the defaults of a character with a shape of the given kind, whose geometry has to be set: slopes up to 45
+ * degrees, no steps, and ground that falls by up to 0.1 m in a tick. */
 ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 
 /* Sets the state of a character at rest in the air, at a position in metres. */
 ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
 
-/* Moves a character for one tick at its velocity, among the shapes that a filter accepts. It slides along surfaces
- * that it meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change.
- * `from` and `state` may point to the same struct. The surfaces that it has met are written to `met` in order; if
- * the buffer is too short, the state is written nevertheless. */
+/* Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
+ * the velocity. `from` and `state` may point to the same struct. The surfaces met are written to `met` in order.
+ * If that buffer is too short, the state is written nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
@@ -1370,7 +1359,7 @@ ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const l
 /* Saves a world in memory. */
 ls2d_status ls2d_world_save(uint32_t world, uint32_t *snapshot);
 
-/* Saves a world into an existing snapshot, and reuses its memory: the fastest way to save every tick. */
+/* Saves a world into an existing snapshot, whose memory is reused. */
 ls2d_status ls2d_world_save_into(uint32_t world, uint32_t snapshot);
 
 /* Restores a saved state. */
@@ -1382,30 +1371,30 @@ ls2d_status ls2d_snapshot_hash(uint32_t snapshot, ls2d_hash *hash);
 /* Encodes a world as bytes. */
 ls2d_status ls2d_world_encode(uint32_t world, uint32_t *bytes);
 
-/* Makes a world from bytes, which may come from any source and are checked. */
+/* Makes a world from bytes, which may come from any source. */
 ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world);
 
 /* ---- Replays of worlds ---- */
 
-/* Sets the default limits of a replay. They allow a day of play at 60 ticks per second. A file made to be slow can
- * take hours to verify. */
+/* Sets the default limits of a replay, which allow a day of play at 60 ticks per second. A file made to be slow
+ * can take hours to verify. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
 /* Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
  * `config` stands for the default settings. */
 ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
 
-/* Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
- * that the world refuses are skipped. */
+/* Executes and empties a list of commands, and advances the recorded world by one tick. Refused commands are
+ * skipped. */
 ls2d_status ls2d_recording_step(uint32_t recording, uint32_t commands);
 
 /* Makes a copy of the recorded world, to draw and query it. */
 ls2d_status ls2d_recording_world(uint32_t recording, uint32_t *world);
 
-/* Takes the bytes that are finished, to be appended to the file. */
+/* Takes the finished bytes, to be appended to the file. */
 ls2d_status ls2d_recording_take(uint32_t recording, uint32_t *bytes);
 
-/* Ends a recording, and returns the bytes that have not been taken yet. */
+/* Ends a recording, and returns the remaining bytes. */
 ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
 
 /* Verifies a replay of a world from any source. A null `limits` stands for the default limits. `ls2d_last_error`
@@ -1414,7 +1403,7 @@ ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limi
 
 /* ---- Timelines of replays of worlds ---- */
 
-/* Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
+/* Opens a replay of a world from any source, to go to any of its ticks. Tick t is the state after t ticks. A null
  * `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
  * is `LS2D_RECORD`. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
@@ -1422,8 +1411,7 @@ ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limi
 /* The current tick, and the number of ticks. Null pointers are not written. */
 ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
 
-/* Goes to a tick. Going to a tick that was played before is fast. Checkpoints on the way are compared: if one
- * differs, the result is `LS2D_RECORD`, and the timeline stays there. */
+/* Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays there. */
 ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
 
 /* Goes forward by a tick. `LS2D_NONE` at the end. */
@@ -1437,115 +1425,111 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
 
 /* ---- Recorders of games with rules of their own ---- */
 
-/* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` the data
- * from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
- * `interval` ticks. */
+/* Starts a recorder for a game with its own rules. `rules` is their name in UTF-8, `setup` the data from which the
+ * game makes its first state, and `start` the hash of that state. There is a checkpoint every `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
-/* Records the final inputs of the next tick: the inputs of all players, one after another. `absent` has a bit for
- * each absent player; its input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
- * with the hash of the state after this tick. */
+/* Records the final inputs of the next tick, all players in order. `absent` has a bit for each absent player,
+ * whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash after
+ * this tick. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
 /* Passes the hash of the state after the last recorded tick. It has no effect if no checkpoint is due. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 
-/* Takes the bytes that are finished, to be appended to the file. */
+/* Takes the finished bytes, to be appended to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
-/* Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
- * and a number. A replay has at most 256 results with different names. They can be read without playing the
- * replay. */
+/* Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
+ * 256 results with different names, which can be read without playing it. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
-/* Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet. */
+/* Ends a replay with the hash of the last state, and returns the remaining bytes. */
 ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint32_t *bytes);
 
 /* ---- Replays of games with rules of their own ---- */
 
-/* Opens a replay of a game with rules of its own, from any source. If it cannot be played, its verdict is written,
+/* Opens a replay of a game with its own rules, from any source. If it cannot be played, its verdict is written,
  * the handle is 0, and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as bytes, and the figures of the replay. Null pointers to figures are not written. */
+/* Name of the rules as bytes, and figures of the replay. Null pointers to figures are not written. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* Name, as bytes, and number of a result that the file states. Results are in ascending order of names. They are
- * true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+/* Name, as bytes, and number of a result that the file states, in ascending order of names. The results are true
+ * if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
-/* The inputs of all players for the next tick, `players` times `input_bytes` bytes. A bit for each absent player
- * is written to `absent` unless it is null. `LS2D_NONE` at the end. */
+/* The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
+ * `LS2D_NONE` at the end. */
 ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
 /* Compares the hash of the game's state with the file. Call it before the first tick and after each tick, or,
  * while seeking, for each `LS2D_REQUEST_CHECKSUM`. */
 ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
 
-/* Adds a result of the game that was played. The verdict compares all added results with those in the file. */
+/* Adds a result of the game that was played, to be compared with those in the file by the verdict. */
 ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
-/* The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
+/* The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state. */
 ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of games with rules of their own ---- */
 
-/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
- * that the game has to fulfil. At the first request the game has to be in its first state. */
+/* Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
+ * returns requests. At the first one the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
-/* The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
- * match, and `LS2D_REQUEST_CHECKSUM`, which `ls2d_replay_check` answers with the hash of the current state.
- * `LS2D_NONE` when the tick is reached. `LS2D_RECORD` if the game has diverged from the file: only earlier ticks
- * can be reached. */
+/* The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
+ * `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
+ * `LS2D_RECORD` if the game has diverged from the file before that tick. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
-/* Sets the interval in ticks at which seeking requests to save the state. The default is 60, or a 256th of the
- * replay's ticks if that is more. */
+/* Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
+ * is more. */
 ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 
 /* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
- * start with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
+ * start with two taken seats or the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
-/* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
+/* Opens a match. All peers pass the same `offer`, for example versions, rules and setup, of at most 512 bytes. */
 ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, uint32_t *handle);
 
-/* Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
- * spectator. */
+/* Joins a match through the participant at the address `contact`, as a spectator if `own_seats` is 0. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
-/* Sends the request to join to another participant, or again to the same one. */
+/* Sends the request to join to this participant. */
 ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
 
 /* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
 ls2d_status ls2d_match_receive(uint32_t handle, uint64_t now, const uint8_t *from, size_t from_size, const uint8_t *packet, size_t size);
 
-/* Advances the match to the time `now`. Call it every few milliseconds, and after packets have arrived. */
+/* Advances the match to the time `now`. Call it every few milliseconds and after packets have arrived. */
 ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 
-/* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
+/* Writes 1 if `ls2d_match_advance` is due, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible:
- * `LS2D_REQUEST_ADVANCE` is then among the next requests. Writes 1 to `issued` if the inputs were issued;
- * otherwise they may be passed again. Without own seats, `size` is 0. */
+/* Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
+ * then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
+ * again. Without own seats, `size` is 0. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
-/* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For
- * `LS2D_REQUEST_ADVANCE`, the inputs of all seats are written to the buffer. `LS2D_NONE` if there is none. */
+/* The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`, the
+ * inputs of all seats are written to the buffer. `LS2D_NONE` if there is none. */
 ls2d_status ls2d_match_next_request(uint32_t handle, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
 /* Passes the hash that `LS2D_REQUEST_CHECKSUM` requests. */
 ls2d_status ls2d_match_report_hash(uint32_t handle, uint32_t tick, const ls2d_hash *hash);
 
-/* The next packet to send, of at most 1200 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
- * if there is none. */
+/* The next packet, of at most 1200 bytes, and its destination, an address of at most 32 bytes. `LS2D_NONE` if
+ * there is none. */
 ls2d_status ls2d_match_next_packet(uint32_t handle, uint8_t *to, size_t to_capacity, size_t *to_size, uint8_t *packet, size_t capacity, size_t *size);
 
 /* The next event. `LS2D_NONE` if there is none. */
@@ -1554,43 +1538,43 @@ ls2d_status ls2d_match_next_event(uint32_t handle, ls2d_match_event *event);
 /* Writes 1 if a joining peer waits for its initial state, otherwise 0. */
 ls2d_status ls2d_match_wants_state(uint32_t handle, uint32_t *wants);
 
-/* Offers the state after a number of final ticks to peers that join. It is kept until it has been sent. */
+/* Offers the state after a number of final ticks to peers that join. */
 ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t *state, size_t size);
 
 /* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
-/* Writes three numbers of ticks: `played` counts all ticks played, `last` the ticks whose inputs are final, and
- * `confirmed` the ticks played with final inputs. Null pointers are not written. */
+/* Numbers of ticks: `played` in all, `last` with final inputs, `confirmed` played with final inputs. Null pointers
+ * are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
 /* Writes the bit mask of this peer's own seats. */
 ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
 
-/* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet, or not kept any more. */
+/* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final or not kept. */
 ls2d_status ls2d_match_final_inputs(uint32_t handle, uint32_t tick, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
 /* Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
- * packet loss in thousandths. Null pointers are not written. */
+ * loss in thousandths. Null pointers are not written. */
 ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uint64_t *round_trip, uint32_t *loss);
 
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
- * majority has decided on an end, other peers can get seats. */
+/* Requests an end of the match after a number of ticks, sent two seconds before. Until a majority has decided,
+ * other peers can get seats. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Requests a pause from all other peers, or, with 0, withdraws the request. */
+/* Requests a pause, or, with 0, withdraws the request. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
-/* Votes for going on without a peer that is missing. */
+/* Votes for going on without a missing peer. */
 ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
 
 /* Votes for removing the player with this key permanently. */
 ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
 
-/* Sets how many ticks may be played with guessed inputs; 0 is lockstep. */
+/* Sets the number of ticks that may be played with guessed inputs; 0 is lockstep. */
 ls2d_status ls2d_match_set_guess(uint32_t handle, uint32_t ticks);
 
 /* ---- Mathematics ---- */
@@ -1598,7 +1582,7 @@ ls2d_status ls2d_match_set_guess(uint32_t handle, uint32_t ticks);
 /* Reads a decimal number such as `-1.25`, rounded to nearest. */
 ls2d_status ls2d_fx_parse(const uint8_t *text, size_t length, ls2d_fx *number);
 
-/* Writes a number as decimal text with all its digits, and the length of the text. */
+/* Writes a number as exact decimal text, and the length of the text. */
 ls2d_status ls2d_fx_format(ls2d_fx number, uint8_t *text, size_t capacity, size_t *length);
 
 /* `numerator / denominator`, rounded to nearest, saturating. `LS2D_NUMBER` if `denominator` is 0. */
@@ -1640,7 +1624,7 @@ ls2d_fx ls2d_angle_sin(ls2d_angle angle);
 /* Cosine of an angle. */
 ls2d_fx ls2d_angle_cos(ls2d_angle angle);
 
-/* Direction of a vector as an angle from the x axis; 0 for the zero vector. */
+/* Angle of a vector from the x axis; 0 for the zero vector. */
 ls2d_angle ls2d_angle_of(ls2d_fx x, ls2d_fx y);
 
 /* An angle of a number of degrees. */
@@ -1658,15 +1642,15 @@ ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 /* Makes a random number generator, to be kept in the state of the game. */
 ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
 
-/* Draws a uniform number from 0 to below `bound`; 0 if `bound` is 0. `from` is the generator before the draw,
- * `rng` the one after it; they may point to the same struct. */
+/* Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` after
+ * it, possibly the same struct. */
 ls2d_status ls2d_rng_below(const ls2d_rng *from, ls2d_rng *rng, uint32_t bound, uint32_t *number);
 
 /* Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
- * the draw, `rng` the one after it; they may point to the same struct. */
+ * the draw, `rng` after it, possibly the same struct. */
 ls2d_status ls2d_rng_range(const ls2d_rng *from, ls2d_rng *rng, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
-/* Hash of bytes, for the state hash of a game with more state than a world. */
+/* Hash of bytes, for the state hash of a game. */
 ls2d_status ls2d_hash_bytes(const uint8_t *data, size_t size, ls2d_hash *hash);
 
 #ifdef __cplusplus
