@@ -37,6 +37,7 @@ pub fn config(source: &mut Source<'_>) -> Config {
     config
 }
 
+/// Adds ground, a pile on it, and sometimes another pile or a chain.
 pub fn setup(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     ground(source, middle, commands);
     pile(source, middle, commands);
