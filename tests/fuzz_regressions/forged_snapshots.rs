@@ -62,3 +62,24 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
     assert!(refusal.ends_with("settled with a velocity"), "{refusal}");
     assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
 }
+
+#[test]
+fn a_snapshot_of_a_contact_whose_points_have_one_feature_is_refused() {
+    // The next tick would find the impulse of the first point for both, unless the rows of the last tick are reused.
+    let mut world = weightless();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let square = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap());
+    world.spawn(&BodyDef::fixed(), &[square]).unwrap();
+    world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[ball]).unwrap();
+    world.step();
+    let add_point = |bytes: &mut Vec<u8>| {
+        // Shapes 0 and 1, touching, not passing through, one point.
+        let contact = [0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1];
+        let at =
+            bytes.windows(contact.len()).position(|window| window == contact).expect("the contact is there");
+        bytes[at + 10] = 2;
+    };
+    let refusal = World::from_bytes(&forged(&world, add_point)).unwrap_err().to_string();
+    assert!(refusal.ends_with("two points with one feature"), "{refusal}");
+    assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
+}

@@ -64,7 +64,8 @@ pub fn run(bytes: &[u8]) -> &'static str {
         Verdict::Unverifiable { .. } => judge::<Sandbox>(&attempt.file),
         verdict => verdict,
     };
-    let changed = attempt.original.is_some_and(|original| original != attempt.file);
+    // Pieces of a recording may complete its truncated copy.
+    let changed = attempt.original.is_some() && !ORIGINALS.contains(&attempt.file);
     assert!(!changed || !verdict.is_match(), "a changed file must not match");
     verdict.name()
 }

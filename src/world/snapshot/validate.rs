@@ -217,6 +217,9 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
         let solid = state.sensor_of(contact.shapes).is_none();
         check(solid || contact.count == 0, || at("impulses at a sensor"))?;
         check(contact.count <= 2, || at("more than 2 points"))?;
+        // Impulses are found by feature, so that two points with one feature would share one impulse.
+        let [first, second] = &contact.points;
+        check(contact.count < 2 || first.feature != second.feature, || at("two points with one feature"))?;
         let limit = crate::solver::IMPULSE_MAX;
         for point in contact.points() {
             let pushes = point.normal >= 0 && point.normal <= limit;
