@@ -1,4 +1,4 @@
-//! Areas: effects of a sensor on the bodies in it.
+//! Areas: wind, water and other effects of a sensor on the bodies inside it.
 //!
 //! An area fills its shape with a medium. `A` is the area in m² of the parts of a body's solid shapes that are inside,
 //! `c` their centre, and `s` the ratio of `A` to the area of all solid shapes of the body. For a body of lines, `A` is
@@ -9,9 +9,9 @@
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `x` is the body's centre of mass, but between two parentheses it is the cross product. `k` is the radius of
+//! Between two parentheses, `x` is the cross product. Elsewhere it is the body's centre of mass. `k` is the radius of
 //! gyration, and `v` and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of
-//! each area that the body is in. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the
+//! each area that acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the
 //! angular velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ const DRAG_MAX: Fx = fx!(1000);
 /// Range in metres.
 const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 
-/// Effect of a sensor on the bodies in it: wind, water, a field of gravity.
+/// Effect of a sensor on the bodies inside it, such as wind, water or a field of gravity.
 ///
 /// The area acts on the solid shapes of dynamic bodies with mass that the sensor detects, in proportion to the part of
 /// each shape that is inside. Rounded outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of
@@ -65,16 +65,18 @@ pub struct Area {
     pub acceleration: Vec2<Fx>,
     /// Acceleration towards the centre of the shape.
     pub attraction: Option<Attraction>,
-    /// Force in N per m² of the part that is inside, along the axes of the area's body, within ±2^20: wind.
+    /// Force in N per m² of a body's part that is inside, along the axes of the area's body, within ±2^20. Acts as
+    /// wind.
     pub force: Vec2<Fx>,
-    /// Velocity of the medium in m/s relative to the area's body, along its axes, within ±400. It acts by drag.
+    /// Velocity of the medium in m/s relative to the area's body and along that body's axes, within ±400. It acts only
+    /// through drag.
     pub flow: Vec2<Fx>,
     /// Decay rate per second, 0 to 1000, of the velocity relative to the medium.
     pub linear_drag: Fx,
     /// Decay rate per second, 0 to 1000, of the angular velocity relative to the area's body.
     pub angular_drag: Fx,
-    /// Mass per area of the medium in kg/m², 0 to 2^20. Buoyancy opposes gravity and the accelerations of areas, at the
-    /// centre of the part that is inside.
+    /// Mass per area of the medium in kg/m², 0 to 2^20. Buoyancy acts at the centre of the part that is inside, against
+    /// gravity and the accelerations of areas.
     pub density: Fx,
 }
 

@@ -33,7 +33,7 @@ macro_rules! define_handle {
         }
 
         impl $name {
-            /// Slot of the value: a small index that is reused, for side tables.
+            /// Slot of the value. Slots are small and are reused, so they can index a side table.
             #[must_use]
             pub const fn index(self) -> u32 {
                 self.index
@@ -167,15 +167,16 @@ pub(crate) struct ArenaRange<'a, T> {
 }
 
 impl<T> ArenaRange<'_, T> {
-    /// Panics if the slot is vacant or in another range. See [`Arena::at_mut`].
+    /// Value in a slot of the range, for changes as in [`Arena::at_mut`]. Panics if the slot is vacant or in another
+    /// range.
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[(slot - self.first) as usize].value.as_mut().expect("an occupied slot")
     }
 }
 
-/// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. Otherwise a small
-/// file could cause a large allocation.
+/// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. Without a limit, a
+/// small file could cause a large allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
@@ -270,7 +271,7 @@ impl<T, H: Handle> Arena<T, H> {
         Some(self.redefine(handle.slot()))
     }
 
-    /// Panics if the slot is vacant.
+    /// Value in an occupied slot. Panics if the slot is vacant.
     #[inline]
     pub(crate) fn at(&self, slot: u32) -> &T {
         self.slots[slot as usize].value.as_ref().expect("an occupied slot")
@@ -317,7 +318,7 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// For changes as in [`Arena::at_mut`].
+    /// All values with their handles, for changes as in [`Arena::at_mut`].
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
         self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
             let generation = slot.generation;
@@ -325,7 +326,8 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and `retired` is right.
+    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and `retired` counts
+    /// the other vacant slots.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {

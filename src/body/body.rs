@@ -176,7 +176,7 @@ impl Body {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg. 0 for bodies that are not dynamic, and for dynamic ones [without mass](super::MassSource::Shapes).
+    /// Mass in kg. 0 for bodies that are not dynamic, and for dynamic bodies [without mass](super::MassSource::Shapes).
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
@@ -238,8 +238,8 @@ impl Body {
         self.island
     }
 
-    /// Whether the body can start or change contacts. A kinematic body can for one tick after it has come to rest, so
-    /// that its final pose is processed.
+    /// Whether the body can start or change contacts. A kinematic body stays active for one tick after it has come to
+    /// rest, so that its final pose is processed.
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,

@@ -252,7 +252,7 @@ impl BodyDef {
         self
     }
 
-    /// Does not validate mass and speed, which depend on shapes and on the world.
+    /// Validates everything except mass and speed, which depend on the shapes and on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         check_position(self.position)?;
         self.settings.validate()?;

@@ -9,7 +9,8 @@ use super::material::Material;
 use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
 use crate::math::{Fx, Vec2};
 
-/// A polyline of [`Geometry::Link`] shapes, which store their neighbours. This prevents ghost collisions at the joints.
+/// A polyline of [`Geometry::Link`] shapes, which store their neighbours. This prevents ghost collisions where two
+/// links meet.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Chain}, fx, math::Vec2, world::World};
@@ -44,8 +45,8 @@ impl<'a> Chain<'a> {
     }
 
     /// Makes the chain solid from its right side, looking along its points. A counter-clockwise loop is then solid from
-    /// outside, and ground from right to left is solid from above. A shape whose centre is on the other side passes
-    /// through.
+    /// outside, and ground whose points run from right to left is solid from above. A shape whose centre is on the left
+    /// side passes through.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;

@@ -22,7 +22,7 @@ use crate::math::Fx;
 pub enum GeometryError {
     /// The polygon does not have 3 to 8 vertices.
     VertexCount {
-        /// Number given.
+        /// Number of vertices given.
         count: u64,
     },
     /// Two neighbouring vertices are closer than 0.5 mm.
@@ -34,7 +34,8 @@ pub enum GeometryError {
     Clockwise,
     /// The outline is concave, collinear, or crosses itself.
     NotConvex {
-        /// Index of the vertex at which an edge starts that has another vertex on its outer side or on its line.
+        /// Index of the vertex at which the wrong edge starts. Another vertex is on the outer side of that edge or on
+        /// its line.
         vertex: u64,
     },
     /// The chain has fewer than 2 points (3 if it is closed), or more than 4096 links.
@@ -97,7 +98,7 @@ impl fmt::Display for GeometryError {
 
 impl core::error::Error for GeometryError {}
 
-/// Text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends, and [`Fx::DELTA`] excludes 0.
+/// Text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends. A minimum of [`Fx::DELTA`] means any value above 0.
 struct Range<'a> {
     min: &'a Fx,
     max: &'a Fx,
@@ -209,7 +210,7 @@ pub enum WorldError {
     AreaOutOfRange {
         /// Name of the property, such as "flow".
         what: &'static str,
-        /// Value, or component of the vector.
+        /// The value, or the component of a vector that is out of range.
         value: Fx,
         /// Smallest value allowed.
         min: Fx,

@@ -25,10 +25,10 @@ pub struct EventSwitches {
     /// Hits: contacts after an approach at [`crate::world::Config::hit_speed`] or faster. A pair reports them if either
     /// shape enables them.
     pub hit: bool,
-    /// Detection by sensors.
+    /// Detection of this shape by sensors.
     #[doc(alias = "trigger")]
     pub sensor: bool,
-    /// Detection of other sensors by this sensor, if their `sensor` switch is on.
+    /// Detection of other sensors by this sensor. The `sensor` switch of the other sensor must be on too.
     pub detect_sensors: bool,
 }
 

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Collision filter. Two shapes in one non-zero group may collide if the group is positive, and do not if it is
-/// negative. For other pairs, each shape's mask must include a category of the other shape.
+/// Collision filter. Two shapes in the same non-zero group may collide if the group is positive, and do not collide if
+/// it is negative. For other pairs, each shape's mask must include a category of the other shape.
 ///
-/// The broad phase is faster for a large set of shapes that do not collide with each other, such as bullets, if they
-/// share one group from -1 to -32 768, or one single category that their masks exclude.
+/// The broad phase is faster for a large set of shapes that do not collide with each other, such as bullets, if all of
+/// them have the same group from -1 to -32 768, or the same single category, which their masks exclude.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;

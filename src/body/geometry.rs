@@ -8,7 +8,7 @@ use super::shape::WORLD_EXTENT_MAX;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 
-/// Smallest radius of circles and capsules, and distance between the ends of lines and capsules, in metres.
+/// Smallest radius of circles and capsules, and smallest distance between the ends of lines and capsules, in metres.
 const SIZE_MIN: Fx = fx!(0.002);
 
 /// Geometry of a shape, relative to the shape's centre.
@@ -48,7 +48,7 @@ pub enum Geometry {
         /// Radius in metres, at least 0.002. The capsule extends at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
-    /// A segment of a [`Chain`](super::Chain). An end with a neighbour limits contact normals to those that the whole
+    /// A segment of a [`Chain`](super::Chain). At an end with a neighbour, contacts have only normals that the whole
     /// chain allows.
     Link {
         /// First end, in metres from the shape's centre.
@@ -128,7 +128,7 @@ impl Geometry {
         capsule.validate().map(|()| capsule)
     }
 
-    /// A [`Polygon`] is valid by construction.
+    /// Checks sizes and coordinates. A [`Polygon`] needs no check, because it is valid by construction.
     pub(crate) fn validate(&self) -> Result<(), GeometryError> {
         match *self {
             Geometry::Circle { radius } => {

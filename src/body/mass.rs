@@ -1,7 +1,8 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! Bodies store the radius of gyration `k = sqrt(I / m)` instead of the moment of inertia. With `u = k w`, linear and
-//! angular velocity are both speeds in m/s of the mass `m`. The parallel axis theorem sums the parts of a body:
+//! Bodies store the radius of gyration `k = sqrt(I / m)` instead of the moment of inertia. The angular velocity `w`
+//! then becomes a speed `u = k w` in m/s, and the same mass `m` applies to both motions. The parallel axis theorem sums
+//! the parts of a body:
 //!
 //! ```text
 //! m     = sum m_i
@@ -45,8 +46,9 @@ const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
-    /// Computed from the area and density of the shapes. If no shape has both, the body has no mass: gravity, forces,
-    /// contacts and joints do not change its velocity, and it pushes other bodies as a kinematic body does.
+    /// Computed from the area and density of the shapes. If no shape has both an area and a density, the body has no
+    /// mass: gravity, forces, contacts and joints do not change its velocity, and it pushes other bodies as a kinematic
+    /// body does.
     #[default]
     Shapes,
     /// Given explicitly. The shapes do not matter.
@@ -80,7 +82,7 @@ pub struct MassProperties {
     /// Mass in kg, 0 for a body without mass.
     pub(crate) mass: Fx,
     pub(crate) centre: Vec2<Fx>,
-    /// In metres. Arbitrary but positive if the mass is 0.
+    /// In metres. Positive but arbitrary if the mass is 0.
     pub(crate) gyration: Fx,
     /// `1 / gyration`, or 0 if the rotation is locked.
     pub(crate) inverse_gyration: Reciprocal,
@@ -126,8 +128,8 @@ impl MassProperties {
         MassProperties { mass, ..self }
     }
 
-    /// Properties of a body whose velocity forces do not change. `k` is arbitrary: 4 m allows 100 rad/s at a speed
-    /// limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
+    /// Properties of a body without mass: forces do not change its velocity. `k` is arbitrary: 4 m allows 100 rad/s at
+    /// a speed limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }

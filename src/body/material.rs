@@ -6,7 +6,8 @@ use super::error::WorldError;
 use crate::fx;
 use crate::math::{Fx, fx_mul};
 
-/// Rule that combines a property of two shapes. If their rules differ, the later one in this list applies.
+/// Rule that combines a property of two shapes. If the two shapes have different rules, the rule further down in this
+/// list applies.
 ///
 /// ```
 /// use lockstep2d::{body::{Material, Mixing}, fx};
@@ -69,7 +70,8 @@ pub struct Material {
     pub restitution_mixing: Mixing,
     /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` means the world's
     /// [`restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the smaller value
-    /// of its two shapes. A ball with a threshold of 0 may take long to come to rest, and a pile of such balls may not.
+    /// of its two shapes. A ball with a threshold of 0 may take long to come to rest, and a pile of such balls may
+    /// never come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius. A pair uses the larger value and the larger radius. A wheel on level ground loses

@@ -13,8 +13,8 @@ use super::error::WorldError;
 /// In bytes.
 const LENGTH_MAX: usize = 16;
 
-/// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports show it after the handle, as in `13v0 ball`. It
-/// is part of the state, so that reports from all machines contain it. Names need not be unique.
+/// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports show it after the handle, as in `13v0 ball`. The
+/// name is part of the state, so that reports from all machines contain it. Names need not be unique.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Name}, world::World};
@@ -55,7 +55,7 @@ impl Name {
         core::str::from_utf8(&self.bytes[..length]).unwrap_or_default()
     }
 
-    /// The bytes may have been decoded from any file.
+    /// Checks the bytes, which may have been decoded from an untrusted file.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         let text = self.as_str().as_bytes();
         let is_allowed = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_');

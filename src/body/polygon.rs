@@ -11,9 +11,9 @@ use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 /// Largest number of vertices of a polygon.
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
-/// Largest extent in metres of a circle, capsule or polygon from its centre on each axis, radius included. If two such
-/// shapes are at most 15 m apart, a vertex of one is within 3 * 156 m + 15 m of the other's centre on each axis, which
-/// fits [`Length`].
+/// Largest extent in metres of a circle, capsule or polygon from its centre on each axis, radius included. Each point
+/// is then within 156 m of the centre. If two such shapes are at most 15 m apart, a vertex of one is within 3 * 156 m +
+/// 15 m of the centre of the other, which fits [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// In metres. A shorter edge has no reliable direction in units of [`Length`].
@@ -44,7 +44,7 @@ pub struct Polygon {
     radius: Length,
 }
 
-/// Serialized form. Normals are recomputed, so that no file can contain wrong ones.
+/// Serialized form. Normals are recomputed, so that no file can contain wrong normals.
 #[derive(Serialize, Deserialize)]
 struct Repr {
     vertices: Vec<Vec2<Length>>,
@@ -67,8 +67,8 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners within about 0.0001 rad of flat or closed: a point beside one edge may be classified as beside the
-    /// other.
+    /// Avoid corners that are flat or closed to within about 0.0001 rad: a point beside one of the two edges may be
+    /// classified as beside the other.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not
@@ -150,7 +150,8 @@ impl Polygon {
 
     /// Returns the polygon translated relative to the shape's centre, in metres.
     ///
-    /// # Errors If the outline leaves the range, or is not valid after its vertices have been rounded.
+    /// # Errors
+    /// If the outline leaves the range, or is not valid after its vertices have been rounded.
     pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
         self.mapped(|vertex| vertex + by)
     }

@@ -8,8 +8,9 @@ use crate::math::Fx;
 
 /// Locked degrees of freedom of a body.
 ///
-/// Contacts and joints treat a body with locked rotation as unable to rotate. A locked axis only clears the velocity
-/// along it in every sub-step, so a body that is pushed along and across it settles over a few ticks.
+/// Contacts and joints treat a body with locked rotation as unable to rotate. A lock of an axis only clears the
+/// velocity along that axis in every sub-step. A body that is pushed both along and across the axis therefore takes a
+/// few ticks to settle.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -53,15 +54,15 @@ pub struct MotionLocks {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Continuous {
-    /// None: the cheapest choice, for debris.
+    /// No bodies. This is the cheapest choice, for debris.
     Off,
     /// Fixed bodies.
     #[default]
     Fixed,
     /// Bodies of all kinds, except bullets.
     Bullet,
-    /// Fixed bodies, and kinematic ones relative to which the body is fast, unlike a platform that carries it. The
-    /// check has a small cost in every tick of a world with kinematic bodies.
+    /// Fixed bodies, and kinematic bodies relative to which this body is fast. A platform that carries the body is not
+    /// one of them. The check has a small cost in every tick of a world with kinematic bodies.
     Kinematic,
 }
 
@@ -91,11 +92,11 @@ pub struct BodySettings {
     pub locks: MotionLocks,
     /// Bodies that this body is swept against.
     pub continuous: Continuous,
-    /// Whether the body falls asleep by itself. [`World::sleep`](crate::world::World::sleep) does not depend on it.
+    /// Whether the body falls asleep by itself. [`World::sleep`](crate::world::World::sleep) ignores this setting.
     pub may_sleep: bool,
-    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. It also limits twice the angular velocity
-    /// times the radius of gyration, about the speed of the outline. A body falls asleep when it and the dynamic bodies
-    /// connected to it have been slower than their limits for half a second.
+    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The limit also applies to twice the angular
+    /// velocity times the radius of gyration, which is about the speed of the outline. A body falls asleep when it and
+    /// the dynamic bodies connected to it have been slower than their limits for half a second.
     pub sleep_speed: Fx,
 }
 

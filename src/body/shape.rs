@@ -52,21 +52,21 @@ pub struct ShapeDef {
     pub material: Material,
     /// Collision filter.
     pub filter: Filter,
-    /// Direction in the body's frame in which other shapes pass through, which makes the shape a one-way platform: 90
-    /// degrees for up.
+    /// Makes the shape a one-way platform. Other shapes pass through it in this direction, which is in the body's
+    /// frame: 90 degrees for up.
     ///
     /// The platform is solid if the contact normal, from the platform to the other shape, is within 60 degrees of the
-    /// direction. Otherwise the pair passes and does not touch, and continues to pass while the shapes overlap along
-    /// the direction by more than a quarter of the world's speculative distance or, for small shapes, a 32nd of the
-    /// smaller extent.
+    /// direction. Otherwise the other shape passes, and the pair does not touch. It continues to pass while the shapes
+    /// overlap along the direction by more than a quarter of the world's speculative distance (for small shapes, a 32nd
+    /// of the smaller extent).
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
-    /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors with [`EventSwitches::detect_sensors`].
-    /// Sensors of fixed bodies do not detect fixed bodies.
+    /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors only if [`EventSwitches::detect_sensors`]
+    /// is on. Sensors of fixed bodies do not detect fixed bodies.
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,
-    /// Effect of a sensor on the bodies in it.
+    /// Effect of the sensor on the bodies inside it.
     pub area: Option<Area>,
     /// Events in which the shape takes part.
     pub events: EventSwitches,
@@ -173,7 +173,7 @@ impl ShapeDef {
         self
     }
 
-    /// Makes the shape a sensor that acts on the bodies in it.
+    /// Makes the shape a sensor that acts on the bodies inside it.
     #[must_use]
     pub fn area(mut self, area: Area) -> Self {
         self.sensor = true;
@@ -255,8 +255,8 @@ pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together.
     pub(crate) def: Box<ShapeDef>,
-    /// AABB with a margin and the predicted motion of a tick. Shapes of fixed bodies have no margin. It decides which
-    /// pairs exist, so it is part of the state.
+    /// AABB with a margin and the predicted motion of a tick. Shapes of fixed bodies have no margin. The box decides
+    /// which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 
@@ -317,7 +317,7 @@ impl Shape {
         self.def.sensor
     }
 
-    /// Effect of a sensor on the bodies in it.
+    /// Effect of the sensor on the bodies inside it.
     #[must_use]
     pub const fn area(&self) -> Option<&Area> {
         self.def.area.as_ref()

@@ -37,7 +37,7 @@ struct Detection {
     area: Option<Area>,
 }
 
-/// In human-readable formats.
+/// Form of the field in human-readable formats.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Readable {

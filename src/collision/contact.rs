@@ -14,11 +14,12 @@ pub(crate) type Pair = (u32, u32);
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touched in the last tick. With a sensor, whether they overlapped at its end.
+    /// Whether the shapes touched in the last tick. If one is a sensor, whether they overlapped at the end of that
+    /// tick.
     pub(crate) touching: bool,
     /// Whether a one-way platform lets the other shape pass: see `one_way.rs`.
     pub(crate) passing: bool,
-    /// Points with stored impulses.
+    /// Number of points with stored impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
     pub(crate) kept: KeptManifold,
@@ -26,13 +27,13 @@ pub(crate) struct Contact {
     pub(crate) rolling: Speed,
 }
 
-/// For the warm start of the next tick.
+/// Impulses of a contact point, for the warm start of the next tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
     /// Normal impulse times the sum of the inverse masses `mA + mB`: `p = L / D` of `solver/row.rs`.
     pub(crate) normal: Speed,
-    /// Tangent impulse with that factor: this point's share of the friction of both points.
+    /// Tangent impulse times `mA + mB`: this point's share of the friction of both points.
     pub(crate) tangent: Speed,
 }
 
@@ -70,8 +71,8 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, coordinates of
-    /// its lever arms that have changed by at most `tolerances` (in metres) are kept.
+    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, the contact
+    /// keeps those coordinates of its lever arms that have changed by at most `tolerances` (in metres).
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;

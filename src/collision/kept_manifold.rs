@@ -23,10 +23,10 @@ pub(crate) struct KeptManifold {
     pub(crate) arm_b: Vec2<Length>,
     /// Vector from the first point to the second, or zero.
     pub(crate) to_second: Vec2<Length>,
-    /// Vector from A's centre of mass to B's at these poses.
+    /// Vector from A's centre of mass to B's at the poses for which the manifold was computed.
     pub(crate) between: Vec2<Length>,
     pub(crate) angles: [Angle; 2],
-    /// Unused ones are zero.
+    /// Separations of the points. Unused ones are zero.
     pub(crate) separations: [Step; 2],
 }
 
@@ -78,8 +78,8 @@ impl KeptManifold {
         }
     }
 
-    /// Takes over coordinates of the lever arms of an earlier manifold with the same points, within the tolerances in
-    /// metres.
+    /// Takes over coordinates of the lever arms of an earlier manifold with the same points, where the difference is at
+    /// most the tolerance in metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
             for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
@@ -177,7 +177,8 @@ impl KeptManifold {
 }
 
 impl KeptSide {
-    /// In radians with 30 fraction bits. `None` if it exceeds [`TURN_MAX`]. 0 for a disc about the centre of mass.
+    /// Rotation since `angle` in radians with 30 fraction bits. `None` if it exceeds [`TURN_MAX`]. 0 for a disc about
+    /// the centre of mass.
     #[inline]
     fn rotation_since(&self, angle: Angle) -> Option<i64> {
         if self.reach == Length::ZERO {
@@ -229,8 +230,8 @@ mod tests {
     }
 
     impl Boxes {
-        /// One box on top of the other and up to 5 mm deep in it, each up to 3 m from its body's centre of mass on each
-        /// axis.
+        /// Two boxes, one on top of the other, that overlap by up to 5 mm. Each box is up to 3 m from its body's centre
+        /// of mass on each axis.
         fn random(rng: &mut Rng) -> Self {
             let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
             let mut offset = || Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
@@ -324,7 +325,7 @@ mod tests {
         }
     }
 
-    /// A fixed body may have its centre of mass so far away that its arm is out of range.
+    /// The centre of mass of a fixed body may be so far away that the lever arm is out of range.
     #[test]
     fn a_level_may_be_far_from_its_origin() {
         for far in [fx!(0), fx!(511.9), fx!(700), fx!(123456.789)] {

@@ -2,9 +2,9 @@
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, to carry over its accumulated impulse: the vertices of A and B that meet
-/// there. Identifiers that also encoded the clipping would change while a pile settles, and with every lost warm start
-/// the pile would sink (`docs/DESIGN.md`).
+/// Identifies a contact point across ticks, to carry over its accumulated impulse. It consists of the vertices of A and
+/// B that meet at the point. Identifiers that also encoded the clipping would change while a pile settles, and with
+/// every lost warm start the pile would sink (`docs/DESIGN.md`).
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
@@ -128,7 +128,7 @@ impl Manifold {
         self.count += 1;
     }
 
-    /// Zeroes the other points.
+    /// Keeps the marked points, in order, and zeroes the rest.
     #[inline]
     fn keep(&mut self, kept: [bool; 2]) {
         let [first, second] = self.points;

@@ -44,7 +44,8 @@ pub struct Config {
     pub gravity: Vec2<Fx>,
     /// Settings of the solver.
     pub solver: SolverSettings,
-    /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. Approaching pairs get more.
+    /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. For approaching pairs the
+    /// distance is larger.
     pub speculative_distance: Fx,
     /// Largest margin of fat boxes in metres, 0.001 to 10. On a body that can move, the margin is a 32nd of the larger
     /// side of the shape's AABB, limited to this value. With larger margins, fat boxes change less often, but more of
@@ -64,8 +65,8 @@ pub struct Config {
     /// Largest number of joints, at most 2^20.
     pub joint_limit: u32,
     /// Largest number of pairs of shapes in a tick, at most 2^20: see
-    /// [`World::pair_count`](crate::world::World::pair_count). Further pairs, in the largest slots, are left out, and
-    /// the tick counts as a fault. The limit bounds time and memory for untrusted worlds.
+    /// [`World::pair_count`](crate::world::World::pair_count). If there are more, the pairs in the largest slots are
+    /// left out, and the tick counts as a fault. The limit bounds time and memory for untrusted worlds.
     pub pair_limit: u32,
 }
 
@@ -90,8 +91,9 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance, beyond which they
-    /// cease to touch. The difference keeps a wobbling contact from beginning and ending repeatedly.
+    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance. They cease to
+    /// touch beyond the speculative distance. The difference keeps a wobbling contact from beginning and ending
+    /// repeatedly.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
         self.speculative_distance / 4
@@ -112,7 +114,7 @@ impl Config {
 
     /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
     /// sink by less than 2.5 % of a box; see [`Config`]. Also reduces the speculative distance to a fiftieth of `size`,
-    /// but not below 1 mm. Sufficient settings stay as they are. Call it after gravity and the tick rate are set.
+    /// but not below 1 mm. Sufficient settings stay as they are. Set gravity and the tick rate before the call.
     ///
     /// The needed number of sub-steps per second is `sqrt(4800 g / size)`. At most 64 per tick and 4000 per second are
     /// set, which is enough for boxes of 5 mm at 60 ticks per second and 10 m/s². Only [soft](ContactTuning::Soft)

@@ -6,11 +6,11 @@ use crate::body::{
 use crate::collision::PosedShape;
 use crate::math::{Aabb, Fx};
 
-/// Low bits of an [`Fx`] that are 0 in the corners of fat boxes: their grid is 2^-22 m.
+/// Number of low bits of an [`Fx`] that are 0 in the corners of fat boxes, whose grid is 2^-22 m.
 pub(crate) const FAT_GRID_SHIFT: u32 = 10;
 
-/// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that move, it is a lever arm,
-/// which has a smaller range than positions.
+/// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that move, this distance is a
+/// lever arm, which has a smaller range than positions.
 pub(crate) fn offset_max(kind: BodyKind) -> Fx {
     match kind {
         BodyKind::Fixed => WORLD_EXTENT_MAX,
@@ -50,8 +50,8 @@ pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     }
 }
 
-/// The margin is in metres. Corners are multiples of 2^-22 m, so that a snapshot can store those near the body's centre
-/// as 32-bit offsets.
+/// Bounds extended by a margin in metres. Corners are multiples of 2^-22 m, so that a snapshot can store those near the
+/// body's centre as 32-bit offsets.
 pub(crate) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
     bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }

@@ -94,9 +94,10 @@ impl HitEvent {
 
 /// A sensor that began or ceased to overlap a shape.
 ///
-/// Overlaps are those at the end of the tick. A shape that crosses a sensor within a tick has both events in that tick,
-/// with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. Bodies are taken to move
-/// straight and to rotate evenly within a tick. A shape that leaves a sensor and returns within the tick has no events.
+/// Overlaps are measured at the end of the tick. A shape that crosses a sensor within a tick has both events in that
+/// tick, with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. Bodies are taken to
+/// move straight and to rotate evenly within a tick. A shape that leaves a sensor and returns within the tick has no
+/// events.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -221,14 +222,14 @@ pub struct Events {
     /// Bodies that the tick moved or put to sleep, in slot order.
     pub moved: Vec<MoveEvent>,
     /// Pairs of solid shapes that began to touch: they were within [`super::Config::touching_distance`] at the start of
-    /// the tick, or pushed each other in it. One of them has to enable contact events. Sorted by shape A, then by shape
-    /// B.
+    /// the tick, or pushed each other in the tick. One of the two shapes has to enable contact events. Sorted by shape
+    /// A, then by shape B.
     pub contact_begin: Vec<ContactEvent>,
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended.
     /// Sorted like `contact_begin`.
     pub contact_end: Vec<ContactEvent>,
-    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. One of them has to
-    /// enable hit events. Sorted like `contact_begin`.
+    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. One of the two shapes
+    /// has to enable hit events. Sorted like `contact_begin`.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,
@@ -268,8 +269,8 @@ pub enum SensorChange {
 }
 
 impl Events {
-    /// Returns the sensor events of the tick in order: ends by changes between ticks, then beginnings and ends by their
-    /// fraction of the tick, with beginnings first at equal fractions.
+    /// Returns the sensor events of the tick in order. Ends caused by changes between ticks come first. The other
+    /// events are sorted by their fraction of the tick, with beginnings first at equal fractions.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::{SensorChange, World}};

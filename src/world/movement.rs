@@ -3,7 +3,7 @@ use super::derived::fattened;
 use super::state::State;
 use crate::body::{Handle, Pose};
 
-/// Moves a body and its shapes to a pose. Shapes that leave their fat box get a new one.
+/// Moves a body and its shapes to a pose. Shapes that leave their fat box get a new fat box.
 pub(crate) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
     let State { bodies, shapes, .. } = &mut *state;
     if !scratch.shapes.whole().move_body(bodies.at_mut(slot), pose, shapes) {
@@ -18,7 +18,7 @@ pub(crate) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pos
     }
 }
 
-/// Gives a shape that has left its fat box a new one, so that queries find it.
+/// Gives a new fat box to a shape that has left its fat box, so that queries find the shape.
 pub(crate) fn cover_shape(state: &mut State, scratch: &mut Scratch, shape: u32) {
     let bounds = scratch.shapes.motion().shape(shape).bounds;
     let fat = fattened(bounds, state.config.margin_of(bounds));

@@ -18,7 +18,7 @@ pub(crate) struct Island {
     pub(crate) bodies: Vec<u32>,
 }
 
-/// A pair of shapes as in the events.
+/// A pair of shapes, as events report it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
@@ -74,7 +74,7 @@ impl State {
         }
     }
 
-    /// Called once for a new or decoded state.
+    /// Sizes the page caches. Called once for a new or decoded state.
     pub(crate) fn keep_pages(&mut self) {
         self.bodies.keep_pages();
         self.shapes.keep_pages();
@@ -82,7 +82,7 @@ impl State {
         self.islands.keep_pages();
     }
 
-    /// The slots must be occupied.
+    /// Bodies of two shapes, whose slots must be occupied.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))
     }
@@ -117,12 +117,12 @@ impl State {
         }
     }
 
-    /// The slot must be occupied.
+    /// Body of a shape, whose slot must be occupied.
     pub(crate) fn body_of(&self, shape: u32) -> &Body {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// The only sensor of a pair that may touch, or of two sensors those that detect the other one.
+    /// Sensors of a pair that may touch. If both shapes are sensors, a sensor counts only if it detects the other.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {

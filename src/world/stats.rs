@@ -70,7 +70,8 @@ pub struct StepStats {
     pub points: u32,
     /// Number of contact points that continue a point of the previous tick with its impulse.
     pub points_kept: u32,
-    /// Number of contact points lost since the previous tick, with an impulse, although their shapes still touch.
+    /// Number of contact points that had an impulse in the previous tick and are gone, although their shapes still
+    /// touch.
     pub points_lost: u32,
     /// Number of pairs of shapes that a cached separating axis of an earlier tick still separates.
     pub axis_hits: u32,

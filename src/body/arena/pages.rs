@@ -125,12 +125,12 @@ impl<T> SharedArena<T> {
 }
 
 impl<T, H> Arena<T, H> {
-    /// Changes when a value is inserted, removed or redefined, or when a restore changes a page.
+    /// Counter that changes when a value is inserted, removed or redefined, or when a restore changes a page.
     pub(crate) fn revision(&self) -> u64 {
         self.kept.revision
     }
 
-    /// Number of restores. Each one leaves the fields that every step changes to the caller.
+    /// Number of restores. A restore does not set the fields that every step changes. The caller has to set them.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }
@@ -140,7 +140,7 @@ impl<T, H> Arena<T, H> {
         self.kept.fit(self.slots.len());
     }
 
-    /// Copies only the pages that have changed since they were last shared.
+    /// Stores the arena in `shared`. Copies only the pages that have changed since they were last shared.
     pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
     where
         T: PartialEq + Serialize,

@@ -22,7 +22,7 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The first line is J. Steiner's formula (1840). Terms along the normals cancel around the outline.
+//! The line for `2 A'` is J. Steiner's formula (1840). Terms along the normals cancel around the outline.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
@@ -62,7 +62,7 @@ impl Figure {
         Figure { doubled_area: area, centre: (x, y), gyration_squared }
     }
 
-    /// A `radius` of 0 changes no bit.
+    /// Moments after rounding by `radius`. A radius of 0 returns the figure unchanged.
     pub(super) fn rounded(self, vertices: &[Vec2<Length>], radius: Length) -> Figure {
         let r = i128::from(Fx::from(radius).to_bits());
         let (mut edges, mut arcs) = (0i128, 0i128);
@@ -117,7 +117,7 @@ impl Figure {
     }
 }
 
-/// Around an outline, these angles sum to one turn.
+/// Angle by which an outline turns at a vertex. All such angles of an outline sum to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
     // Exact: edges are at most 220 m long on each axis, so a sum of two products has at most 61 bits.

@@ -176,9 +176,9 @@ impl BroadPhase {
         }
     }
 
-    /// Finds the overlapping pairs with at least one moved box and for which `accept` returns true, in sorted order.
-    /// Keeps the `limit` smallest pairs and returns whether there are more. `accept` must reject every pair within one
-    /// collision class, and every pair of fixed bodies.
+    /// Finds the overlapping pairs that have at least one moved box and for which `accept` returns true, in sorted
+    /// order. Keeps the `limit` smallest pairs and returns whether there are more. `accept` must reject every pair
+    /// within one collision class, and every pair of fixed bodies.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -208,7 +208,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking more slots than half of the moving boxes costs more than it saves.
+                    // Marking slots pays off only if they are fewer than half of the moving boxes.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }
@@ -221,7 +221,7 @@ impl BroadPhase {
         smallest.finish()
     }
 
-    /// Boxes of the trees' inner nodes with their depths. Empty for the other kinds.
+    /// Boxes of the trees' inner nodes with their depths. Empty for broad phases without trees.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         match &self.structure {
             Structure::Trees(trees) => trees.inner_boxes(),
@@ -296,7 +296,7 @@ impl MovedSet {
     }
 }
 
-/// Keeps the smallest pairs in bounded memory, whatever their order.
+/// Keeps the smallest pairs in bounded memory. The order in which they are added does not matter.
 struct SmallestPairs<'a> {
     pairs: &'a mut Vec<Pair>,
     limit: usize,

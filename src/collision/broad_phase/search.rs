@@ -1,6 +1,6 @@
 //! Searches over boxes. A tree skips subtrees that a search does not reach, and the reach may shrink as results are
-//! found. A test may accept a box that is a few units of the last place too far away, but does not reject one within
-//! reach.
+//! found. [`Search::reaches`] may accept a box that is a few units of the last place out of reach, but does not reject
+//! a box within reach.
 
 use core::ops::ControlFlow;
 
@@ -48,8 +48,8 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         Along { area, translation, fraction: Unit::ONE, around, visit }
     }
 
-    /// Separating axis test perpendicular to the translation `d`: `t d` meets the Minkowski difference of the boxes
-    /// unless `d x p` has one sign for all its corners `p`.
+    /// Separating axis test perpendicular to the translation `d`: the line `t d` meets the Minkowski difference of the
+    /// boxes unless `d x p` has the same sign for all corners `p` of the difference.
     fn strip_meets(&self, aabb: Aabb) -> bool {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
@@ -69,7 +69,7 @@ impl<F: FnMut(u32) -> Unit> Search for Along<F> {
         self.around.overlaps(aabb) && self.strip_meets(aabb)
     }
 
-    /// Prefers the first contact on the axis of the larger displacement.
+    /// Prefers the box that is reached first on the axis of the larger displacement.
     fn prefers(&self, a: Aabb, b: Aabb) -> bool {
         let Vec2 { x, y } = self.translation;
         match (x.unsigned_abs() >= y.unsigned_abs(), x >= Fx::ZERO, y >= Fx::ZERO) {
@@ -98,7 +98,7 @@ fn coarse(point: Vec2<Fx>) -> (i64, i64) {
     (point.x.to_bits() >> 2, point.y.to_bits() >> 2)
 }
 
-/// Rounded outwards.
+/// The area swept up to a fraction of the translation, rounded outwards.
 fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
     let floor = |way: Fx| (i128::from(way.to_bits()) * i128::from(fraction.to_bits())) >> Unit::FRAC_NBITS;
     let (x, y) = (floor(translation.x), floor(translation.y));
@@ -127,8 +127,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // Distances saturate at `Fx::MAX`, so that radius reaches every box. With a smaller one, each distance is below
-        // 2^63 when the squares are added, so that the sum fits.
+        // The radius `Fx::MAX` reaches every box, because distances saturate there. With a smaller radius, each
+        // distance is below 2^63 when the squares are added, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

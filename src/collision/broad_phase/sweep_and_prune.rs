@@ -18,11 +18,11 @@ enum Axis {
 pub(crate) struct SweepAndPrune {
     axis: Axis,
     boxes: BoxList,
-    /// Slots in the order of the last sweep, a cache, followed by slots added since then.
+    /// Slots in the order of the last sweep, followed by slots added since then. The order is a cache.
     order: Vec<u32>,
     /// For each slot, whether it is in `order`. A removed slot stays there until the next sweep.
     ordered: Vec<bool>,
-    /// Slots added since the last sweep.
+    /// Number of slots added since the last sweep.
     newcomers: usize,
     sorted: Vec<Interval>,
 }

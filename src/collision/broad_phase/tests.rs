@@ -1,4 +1,4 @@
-//! Compares the kinds with each other, and their queries with exact arithmetic.
+//! Compares the kinds of broad phase with each other, and their queries with exact arithmetic.
 
 use super::*;
 use crate::body::Filter;
@@ -9,7 +9,7 @@ use alloc::vec;
 const KINDS: [BroadPhaseKind; 3] =
     [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
 
-/// On a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
+/// A random number on a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
 fn random_fx(rng: &mut Rng, half: i64) -> Fx {
     let step = 1 << 16;
     let range = (Fx::from_bits(-(half / step)), Fx::from_bits(half / step));

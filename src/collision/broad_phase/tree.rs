@@ -26,8 +26,8 @@ mod tests;
 
 const NONE: u32 = u32::MAX;
 
-/// Largest difference of the heights of two siblings. It lets a long ground box stay near the root. With 4, finding the
-/// pairs of 10 000 boxes on some long ground boxes takes several times as long.
+/// Largest difference of the heights of two siblings. A large value lets a long ground box stay near the root. With 4,
+/// it takes several times as long to find the pairs of 10 000 boxes on some long ground boxes.
 const IMBALANCE_MAX: u8 = 16;
 
 /// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes.
@@ -42,10 +42,11 @@ pub(crate) struct Tree {
     /// Leaf of each slot, or [`NONE`].
     leaves: Vec<u32>,
     len: u32,
-    /// Leaves inserted or removed since the last rebuild. While it is 0, every node is in use and stored before its
-    /// children.
+    /// Number of leaves inserted or removed since the last rebuild. While it is 0, every node is in use and stored
+    /// before its children.
     relinked: u32,
-    /// Moves since the last refit or rebuild that took a leaf out of its neighbourhood without relinking it.
+    /// Number of moves since the last refit or rebuild that took a leaf out of its neighbourhood without relinking it:
+    /// see [`Tree::stays_near`].
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -176,7 +177,7 @@ impl Tree {
         boxes
     }
 
-    /// Ancestors shrink in the next refit or rebuild.
+    /// Sets the box of a leaf, and enlarges its ancestors to contain the box. They shrink in the next refit or rebuild.
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;
@@ -202,7 +203,7 @@ impl Tree {
         self.repair(parent);
     }
 
-    /// The sibling of the leaf replaces their parent.
+    /// Takes a leaf out of the tree: its sibling replaces their parent.
     fn unlink(&mut self, leaf: u32) {
         self.relinked = self.relinked.saturating_add(1);
         let parent = self.at(leaf).parent;
@@ -219,8 +220,9 @@ impl Tree {
         self.repair(grandparent);
     }
 
-    /// The node at which the new parent and the ancestors gain the least perimeter. Descends to the child with the
-    /// smaller lower bound, unless it exceeds the best cost and the best node is low enough for a leaf as its sibling.
+    /// The sibling with which a new leaf adds the least perimeter to the new parent and the ancestors. The search
+    /// descends to the child with the smaller lower bound of this cost. It ends if the bound exceeds the best cost, and
+    /// the best node is low enough to have a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;
@@ -251,10 +253,10 @@ impl Tree {
         best
     }
 
-    /// Whether a leaf may stay in place with a new box: no node above its fourth ancestor grows.
+    /// Whether a leaf may stay in place with a new box: its fourth ancestor contains the box.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
-        // With a nearer ancestor, most moved boxes would be reinserted. With a higher one, the tree would degrade.
+        // With a lower ancestor, most moved boxes would be reinserted. With a higher ancestor, the tree would degrade.
         let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
@@ -282,7 +284,7 @@ impl Tree {
         node.class = a.class.common(b.class);
     }
 
-    /// The caller sets the parent of the new child.
+    /// Replaces a child of a node, or the root. The caller sets the parent of the new child.
     fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
         if parent == NONE {
             self.root = new;

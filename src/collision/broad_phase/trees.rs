@@ -1,5 +1,5 @@
-//! Two trees, one for fixed bodies and one for others. The former stays unchanged while other bodies move, and pairs of
-//! fixed bodies are not searched for.
+//! Two trees, one for fixed bodies and one for others. The tree of fixed bodies stays unchanged while other bodies
+//! move, and pairs of fixed bodies are not searched for.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -64,7 +64,7 @@ impl Trees {
         self.fixed.remove(slot);
     }
 
-    /// No slot occurs twice.
+    /// Replaces all boxes. No slot may occur twice.
     pub(super) fn refill(&mut self, boxes: impl Iterator<Item = (u32, Aabb, bool)> + Clone) {
         let those = |wanted: bool| {
             let those = boxes.clone().filter(move |&(_, _, fixed)| fixed == wanted);

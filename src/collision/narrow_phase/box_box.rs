@@ -107,7 +107,7 @@ pub(crate) struct BoxPairs {
     batches: Vec<Batch>,
 }
 
-/// Unused lanes contain the boxes of the first pair.
+/// Up to [`WIDTH`] pairs, one in each lane. Unused lanes contain the boxes of the first pair.
 #[derive(Clone, Debug)]
 struct Batch {
     at: [[u32; WIDTH]; 2],
@@ -138,7 +138,8 @@ impl BoxPairs {
         self.count = 0;
     }
 
-    /// Adds a pair, with the vector `d` between the centres. Returns false, without adding, if it is out of range.
+    /// Adds a pair, with the vector `d` between the centres. Returns false, without adding, if the distance or the
+    /// margin is out of range.
     #[inline]
     pub(crate) fn push(&mut self, (a, b): Pair, d: Vec2<Fx>, radii: [Length; 2], margin: Length) -> bool {
         if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
@@ -164,7 +165,7 @@ impl BoxPairs {
         true
     }
 
-    /// `machine` must have vector instructions if pairs were added.
+    /// Computes the manifolds of the added pairs. If there are any, `machine` must have vector instructions.
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
         if let (false, Some(vectors)) = (batches.is_empty(), machine.vectors()) {

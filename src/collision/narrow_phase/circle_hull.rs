@@ -57,7 +57,7 @@ pub(in crate::collision) fn distance_along(n: Vec2<Unit>, d: Vec2<Length>) -> i6
     )
 }
 
-/// In units of `Step`, not saturated.
+/// A length in units of `Step`, not saturated.
 pub(in crate::collision) fn step_bits(length: Length) -> i64 {
     i64::from(length.to_bits()) << (Step::FRAC_NBITS - Length::FRAC_NBITS)
 }

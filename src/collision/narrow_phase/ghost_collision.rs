@@ -18,7 +18,7 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
 /// Cosine between a face normal and the contact normal above which the contact is on that face.
 const SAME: Unit = Unit::lit("0.999999");
-/// Cosine above which a face counts as the contact's own, if the contact is on a face: 26 degrees.
+/// Cosine (of 26 degrees) above which a face counts as the contact's own, if the contact is on a face.
 const OWN: Unit = Unit::lit("0.9");
 
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +27,14 @@ pub(crate) struct GhostFilter {
     pub(crate) shift: Vec2<Length>,
     /// Largest displacement of a point by rotation.
     pub(crate) turn: Length,
-    /// Overlap that may be left to the next tick.
+    /// Overlap in metres that may be left to the next tick.
     pub(crate) slack: Length,
     /// Largest approach along the axis in metres: a shape that falls onto a face does not pass by.
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// Faces with a larger cosine to the contact normal are the contact's own, which a shape does not pass by.
+    /// A face with a larger cosine to the contact normal is the contact's own: the shape touches that face and does not
+    /// pass by it.
     own: Unit,
 }
 
@@ -69,7 +70,8 @@ pub(crate) fn is_ghost(a: &PosedShape, b: &PosedShape, filter: &GhostFilter) -> 
     some_face_parts(hull_a, hull_b, d, filter) || some_face_parts(hull_b, hull_a, -d, &back)
 }
 
-/// A segment's own centre may be far away.
+/// Origin of a shape's coordinates. For a segment it is the centre of the other shape, because the segment's own centre
+/// may be far away.
 fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     match shape.outline {
         Outline::Circle { .. } | Outline::Polygon(_) => shape.centre,
@@ -77,7 +79,7 @@ fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     }
 }
 
-/// `room` provides storage if the outline is not a hull already.
+/// Outline of a shape as a hull. `room` provides storage if the outline is not a hull already.
 fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
     let from_other = shape.centre - other.centre;
     *room = match &shape.outline {
@@ -89,7 +91,8 @@ fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Optio
     room.as_ref()
 }
 
-/// `d` is the vector between the origins of the coordinates.
+/// Whether a face of `a` separates the hulls throughout the motion, up to the slack. `d` is the vector from the origin
+/// of `a` to that of `b`.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
     (0..a.faces()).any(|edge| {
@@ -110,7 +113,7 @@ fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) ->
     })
 }
 
-/// In units of `Step`. 0 for a line perpendicular to the axis.
+/// Width of a hull along an axis in units of `Step`. 0 for a line perpendicular to the axis.
 fn width(hull: &Hull, n: Vec2<Unit>) -> i64 {
     let along = |&vertex: &Vec2<Length>| distance_along(n, vertex);
     let (lower, upper) = hull

@@ -1,8 +1,8 @@
 //! Contact of two convex outlines: the separating axis test over the face normals of both, then clipping of the
 //! incident edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
 //!
-//! If the outlines do not overlap, the closest features may be two corners, which no face normal detects. That case has
-//! its own normal, so that a box falling past the corner of another box does not catch on it.
+//! If the outlines do not overlap, the closest features may be two corners, which no face normal detects. The normal is
+//! then the line between the corners, so that a box that falls past the corner of another box does not catch on it.
 
 mod clip;
 
@@ -12,8 +12,9 @@ use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
-/// Margin in metres by which the separation from B's best face must exceed that from A's to make it the reference face:
-/// flickering between two equal faces would make anchors jump. Polygons with a larger separation count as disjoint.
+/// B's best face becomes the reference face if its separation exceeds that of A's best face by more than this margin in
+/// metres. Otherwise the choice between two equal faces would flicker, and anchors would jump. Polygons with a
+/// separation above the margin count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// Fraction bits of the product of a length and a unit vector.
@@ -45,7 +46,7 @@ pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits(
 #[derive(Clone, Copy)]
 pub(in crate::collision) struct Face {
     pub(in crate::collision) edge: usize,
-    /// From the other outline's vertices, without radii, with 52 fraction bits.
+    /// Separation of the other outline's vertices from the face, without radii, with 52 fraction bits.
     pub(in crate::collision) separation: i64,
 }
 
@@ -61,7 +62,7 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let from_cache = match *cached_axis {
-        // The SIMD path has none. Ignoring them here too keeps the counters equal.
+        // The SIMD path has no cached axes. Ignoring them here too keeps the counters equal.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -132,7 +133,7 @@ pub(in crate::collision) fn are_apart(
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// `a` is two-sided and has no face at its ends.
+/// Whether `b` is beyond an end of `a`, if `a` is two-sided. Such an outline has no faces at its ends.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();
@@ -218,19 +219,19 @@ fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
     product(n, a).abs().max(product(n, b).abs())
 }
 
-/// With 52 fraction bits.
+/// `n . v` with 52 fraction bits.
 #[inline]
 fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
     i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
 }
 
-/// With 52 fraction bits.
+/// Smallest `n . v` over the vertices, with 52 fraction bits.
 #[inline]
 fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
     vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
 }
 
-/// With 52 fraction bits.
+/// Separation of `b` from a face of `a`, without radii, with 52 fraction bits.
 pub(in crate::collision) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
     plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
 }

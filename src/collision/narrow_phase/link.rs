@@ -33,7 +33,7 @@ enum LinkEnd {
     Joined { direction: Vec2<Unit>, turn: Turn },
 }
 
-/// As seen from the side of the shape.
+/// Turn of the chain at a vertex, as seen from the side of the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
     Convex,
@@ -91,7 +91,7 @@ impl Facing {
         })
     }
 
-    /// Tests the normal that the shape and the link alone would have.
+    /// Decides on the normal that the shape and the link would have without the rest of the chain.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
@@ -121,7 +121,7 @@ impl Facing {
         }
     }
 
-    /// Largest separation from the neighbours' faces at convex vertices. The chain is solid behind both faces.
+    /// Largest separation of `b` from the neighbours' faces at convex vertices. The chain is solid behind both faces.
     fn neighbour_separation(&self, b: &Hull) -> i64 {
         let [start, end] = [(self.start, 0), (self.end, 1)].map(|(end, vertex)| match end {
             LinkEnd::Joined { turn: Turn::Convex, direction } => {
@@ -133,7 +133,7 @@ impl Facing {
         start.max(end)
     }
 
-    /// The circle is about the origin.
+    /// Contact of a circle about the origin.
     pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
         let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
         let past = |vertex: Vec2<Length>, direction: Vec2<Unit>| -> Length { (-vertex).dot(direction) };
@@ -186,7 +186,7 @@ impl Facing {
         Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
     }
 
-    /// Nearest features of separate outlines, if the chain allows their normal.
+    /// Contact at the nearest features of separate outlines, if the chain allows their normal.
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
         let found = if hull_hull::is_reference_of_b(a, b, face_a, face_b, true) {
@@ -205,7 +205,7 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // Beyond the end of the link, its line only limits the approach, by speculative points.
+                // Beyond the end of the link, its line only limits the approach, so only speculative points stay.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }
@@ -219,7 +219,7 @@ impl Facing {
         past(self.hull.vertices()[0]) >= -slack && past(self.hull.vertices()[1]) <= slack
     }
 
-    /// Face of least overlap among those that the chain allows.
+    /// Contact on the face of least overlap among the faces whose normals the chain allows.
     fn collide_overlapping(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let face = self.face(b);
@@ -246,7 +246,7 @@ impl Facing {
     }
 }
 
-/// As seen from the right of the chain.
+/// Turn from one direction of the chain to the next, as seen from the right of the chain.
 fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     let sine: Unit = from.cross(to);
     let cosine: Unit = from.dot(to);

@@ -29,7 +29,7 @@ const REJECT_SLACK: Fx = fx!(0.001);
 /// Largest speculative margin in metres, within the range of a separation (16 m).
 const MARGIN_MAX: Length = Length::lit("15");
 
-/// `closing` is the possible approach in the tick in metres.
+/// Speculative margin of a pair in metres. `closing` is the possible approach in the tick in metres.
 #[inline]
 pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
     speculative.saturating_add(convert(closing)).min(MARGIN_MAX)
@@ -66,7 +66,7 @@ pub(crate) fn collide_near(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Relative to the polygon for a circle and a polygon, and to the other shape for a segment or link.
+    // Anchors are relative to the polygon for a circle and a polygon, and to the other shape for a segment or link.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {
@@ -116,21 +116,21 @@ pub(crate) fn collide_near(
             let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
             facing.collide_hull(hull_a, margin).swapped()
         }
-        // Nothing determines on which side of the other a line should be.
+        // Nothing determines on which side of each other two lines should be.
         (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     };
     manifold.origin = origin;
     manifold
 }
 
-/// Relative to the centre of the other shape.
+/// A segment as a hull relative to the centre of the other shape.
 fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     let Outline::Segment { a, b } = segment.outline else { return None };
     let from_other = segment.centre - other.centre;
     segment::near_hull(from_other + a, from_other + b)
 }
 
-/// Relative to the centre of the other shape, oriented towards a point in it.
+/// A link relative to the centre of the other shape, oriented towards a point in that shape.
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
     let from_other = link.centre - other.centre;

@@ -1,7 +1,7 @@
 //! One-way platforms.
 //!
 //! Let `p` be the pass direction, `m` the contact normal from the platform to the other shape, and `s` the separation
-//! of the two along `p`. The other shape
+//! of the two shapes along `p`. The other shape
 //!
 //! ```text
 //! continues to pass  if it was passing, overlaps, and s < -slack
@@ -9,14 +9,14 @@
 //! else passes
 //! ```
 //!
-//! A shape that turns round half-way falls back, and one that has come through is supported as soon as it is out. The
-//! slack lets a shape slide from one platform to the next.
+//! A shape that turns round half-way falls back through the platform. A shape that has passed is supported as soon as
+//! it is out of the platform. The slack lets a shape slide from one platform to the next.
 
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{Outline, PosedShape};
 use crate::math::{Fx, Unit, Vec2, widen};
 
-/// The direction is in world axes.
+/// A one-way platform and its pass direction in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneWay<'a> {
     pub(crate) shape: &'a PosedShape,
@@ -24,7 +24,7 @@ pub(crate) struct OneWay<'a> {
 }
 
 impl OneWay<'_> {
-    /// The manifold's normal points to `other`.
+    /// Whether the platform lets `other` pass. The manifold's normal points to `other`.
     pub(crate) fn lets_pass(
         &self,
         other: &PosedShape,
@@ -44,7 +44,7 @@ impl OneWay<'_> {
         upright < Unit::lit("0.5")
     }
 
-    /// Along the pass direction. Negative until the other shape is fully through.
+    /// Separation of the shapes along the pass direction. Negative until the other shape is fully through.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);

@@ -9,7 +9,8 @@ use crate::math::{Fx, Vec2, div_round, saturate_wide};
 /// enough that relative coordinates, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
-/// Relative to the other shape's centre. `None` if the segment misses the window.
+/// The part of a segment in the window. All positions are relative to the other shape's centre. `None` if the segment
+/// misses the window.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let direction = (b - a).normalized()?;
     let (p, q) = clipped_to_window(a, b)?;
@@ -20,7 +21,7 @@ pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, V
     clip(a, b, WINDOW)
 }
 
-/// The square is about the origin.
+/// The part of a segment in a square about the origin.
 pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
     let is_inside = |v: Vec2<Fx>| v.x.unsigned_abs().max(v.y.unsigned_abs()) <= half_side.unsigned_abs();
@@ -37,7 +38,7 @@ pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Opt
     Some((p, q))
 }
 
-/// Part where the linear function `outside` is not positive.
+/// The part of a segment where the linear function `outside` is not positive.
 fn clip_to_half_plane(
     p: Vec2<Fx>,
     q: Vec2<Fx>,

@@ -14,7 +14,7 @@ use crate::math::{Fx, Unit, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Distance {
     /// Distance between the surfaces in metres, or the negative length of the shortest translation that separates them.
-    /// The error is up to 20 nm for separate cores and 1e-9 of the size for overlapping ones.
+    /// The error is up to 20 nm for separate cores and 1e-9 of the size for overlapping cores.
     pub(crate) distance: Fx,
     /// Nearest point of A, or its deepest point inside B, relative to the origin of the support shapes.
     pub(crate) point_a: Vec2<Fx>,
@@ -89,7 +89,7 @@ enum Nearest {
     Edge(Vertex, Vertex),
 }
 
-/// `None` if the cores share a point.
+/// Nearest points of two cores. `None` if the cores share a point.
 fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     let (first_a, first_b) = (a.points()[0], b.points()[0]);
     let mut found = Nearest::Vertex(Vertex { a: first_a, b: first_b, w: first_b - first_a });
@@ -123,11 +123,11 @@ fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     }
 }
 
-/// The vertex `s` is on the origin's side of the edge `p q`, onto whose interior the origin projects. `None` if the
-/// origin is inside the triangle.
+/// Feature of the triangle `p q s` nearest to the origin. `None` if the origin is inside. `s` must be on the origin's
+/// side of the edge `p q`, and the origin must project onto the interior of that edge.
 fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     let winding = cross(q.w - p.w, s.w - p.w).signum();
-    // As seen from the triangle's third vertex.
+    // Whether the origin is beyond an edge, as seen from the third vertex of the triangle.
     let beyond_ps = cross(p.w - s.w, -s.w) * winding < 0;
     let beyond_sq = cross(s.w - q.w, -q.w) * winding < 0;
     match (beyond_ps, beyond_sq) {
@@ -138,7 +138,7 @@ fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     }
 }
 
-/// Whether the origin is on the side of `p` of the line through `s` perpendicular to `s p`.
+/// Consider the line through `s` that is perpendicular to `s p`. Whether the origin and `p` are on the same side of it.
 fn projects_inside(s: Vertex, p: Vertex) -> bool {
     dot(p.w - s.w, -s.w) > 0
 }
@@ -178,7 +178,7 @@ fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
     best.unwrap_or(Axis { separation: Grid::ZERO, normal: Vec2::Y, point_a: shared, point_b: shared })
 }
 
-/// Normal of each face, separation of the other core, and its nearest point.
+/// For each face: its normal, the separation of the other core from it, and the nearest point of the other core.
 fn faces(
     support_shape: &SupportShape,
     other: &SupportShape,
@@ -249,7 +249,7 @@ mod tests {
         assert!(worst < fx!(0.00000002), "the largest error should be below 20 nm, not {worst} m");
     }
 
-    /// Moving by the depth along the normal makes the shapes touch. Less in any direction leaves an overlap.
+    /// Moving by the depth along the normal makes the shapes touch. Moving less, in any direction, leaves an overlap.
     #[test]
     fn depth_is_the_shortest_way_out() {
         let mut rng = Rng::new(2);

@@ -1,8 +1,8 @@
-//! The part of a convex shape that is inside another one: its area and its centre of area.
+//! The part of a convex shape that is inside another convex shape: the area and the centre of that part.
 //!
-//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. Each edge of the other
-//! ring cuts a ring in turn (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
-//! to 2^-32. Areas and centres are exact sums, each rounded once.
+//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. The edges of one ring cut
+//! the other ring in turn (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded to
+//! 2^-32. Areas and centres are exact sums, each rounded once.
 //!
 //! Rounded outlines have a corner in each of 32 directions, so far out that a disc keeps its area. They are off by up
 //! to 0.4 % of the radius for a disc, and 1.7 % along a straight edge.
@@ -16,15 +16,15 @@ use crate::math::{Angle, Fx, Rot, Unit, Vec2, div_round, fx_div, fx_mul, saturat
 const CORNERS: u32 = 32;
 /// Circumradius of a polygon with the area of a disc of radius 1: `sqrt(t / sin t)` for an angle `t` between corners.
 const CORNER_RADIUS: Fx = fx!(1.003222080);
-/// Each edge of the other ring adds at most one point.
+/// Largest number of points of a cut ring: each edge of the other ring adds at most one point.
 const POINTS: usize = 2 * CORNERS as usize;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativePose {
-    /// From the origin of the rings, in metres.
+    /// Vector from the origin of the rings to the body's centre of mass, in metres.
     pub(crate) centre: Vec2<Fx>,
     pub(crate) rotation: Rot,
-    /// In the body's frame, in metres.
+    /// Centre of mass in the body's frame, in metres.
     pub(crate) local_centre: Vec2<Fx>,
 }
 
@@ -63,7 +63,8 @@ impl Ring {
         }
     }
 
-    /// Corners are in fixed world directions, so that the ring of a disc does not rotate.
+    /// Ring of points widened by a radius. Corners are in fixed world directions, so that the ring of a disc does not
+    /// rotate.
     fn rounded(points: &[Vec2<Fx>], radius: Fx) -> Self {
         let radius = fx_mul(radius, CORNER_RADIUS);
         let corner = |index: u32| {
@@ -109,7 +110,7 @@ impl Ring {
         *points = left;
     }
 
-    /// `None` if nothing is left.
+    /// Size and centre of the ring. `None` if nothing is left.
     pub(crate) fn extent(&self) -> Option<Extent> {
         let Ring(points) = self;
         let (&first, rest) = points.split_first()?;
@@ -171,7 +172,7 @@ mod tests {
         assert_eq!(above.extent(), None);
     }
 
-    /// With the centre `h` above the surface: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
+    /// Area under the surface of a disc whose centre is `h` above it: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
     #[test]
     fn a_disc_is_cut_as_theory_says() {
         let sea = Ring::of(&square(fx!(50)), &pose(fx!(0), fx!(-50), Angle::ZERO));

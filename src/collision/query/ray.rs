@@ -1,10 +1,10 @@
 //! Ray cast against a shape: `o + t d` for the smallest `t` from 0 to 1.
 //!
 //! The outline of a core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about its
-//! vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`. It
-//! enters a circle about `p` half a chord before its nearest point to `p`. Products are exact, and `|e|` and `|d|`,
-//! with a relative error of 1.5e-9, affect lengths up to the radius, so that rays and segments may be as long as the
-//! world.
+//! vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`. The ray
+//! enters a circle about `p` half a chord before the ray's nearest point to `p`. Products are exact. `|e|` and `|d|`
+//! have a relative error of 1.5e-9, but they only affect lengths up to the radius. Rays and segments may therefore be
+//! as long as the world.
 
 use super::distance::overlap;
 use crate::collision::shape::support::{
@@ -25,7 +25,7 @@ pub(crate) struct RayHit {
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// First hit of a ray. Segments are hit from both sides, and at their end if the ray runs along them.
+/// First hit of a ray. A segment is hit from both sides, and at its end by a ray that runs along the segment.
 pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
     if contains_point(shape, origin) {
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);

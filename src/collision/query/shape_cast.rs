@@ -2,8 +2,8 @@
 //! shape cast is therefore a ray cast, without iteration.
 //!
 //! A moving shape stops at a distance of [`SKIN`] before contact. Its next move must not be stopped by a surface that
-//! it slides along or leaves. If it starts within the skin, or overlapping, only a movement against the normal is a
-//! hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
+//! it slides along or leaves. If the shape starts within the skin, or overlapping, only a movement against the normal
+//! is a hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
 
 use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
@@ -109,7 +109,7 @@ fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_V
     (merged, count.max(1))
 }
 
-/// Compares angles from 0 to below a full turn.
+/// Whether the direction of `u` has a smaller angle than that of `v`, from 0 to below a full turn.
 fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
     let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
     match (lower_half(u), lower_half(v)) {

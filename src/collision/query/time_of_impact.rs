@@ -27,7 +27,7 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// steps.
 const STEPS_MAX: u32 = 48;
 
-/// Largest number of steps of queries, which are rare: policies other than [`StartPolicy::Protect`].
+/// Largest number of steps of queries, which are rare. Queries have policies other than [`StartPolicy::Protect`].
 const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians. With this limit and [`REACH_MAX`], `theta^2 |r|` fits its type.
@@ -65,8 +65,8 @@ pub(crate) enum TimeOfImpact {
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
     /// The shapes overlap at the start, too deeply for a reliable direction of separation. With
-    /// [`StartPolicy::Report`], any overlap. With [`StartPolicy::Protect`], also any contact of two shapes without an
-    /// inner radius.
+    /// [`StartPolicy::Report`], any overlap is too deep. With [`StartPolicy::Protect`], any contact of two shapes
+    /// without an inner radius is too deep.
     Overlapped,
     /// The search gave up. The shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
@@ -89,9 +89,9 @@ pub(crate) enum StartPolicy {
 /// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. A depth such as a
 /// quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
 ///
-/// Shapes that start within the target get another target: half-way from the initial separation, at most 0, to a depth
-/// of three quarters of the inner radius of B, or of A if B has none. The centre of B then does not pass the surface of
-/// A.
+/// Shapes that start within the target get another target. It is half-way between the initial separation (0 if that is
+/// positive) and a depth of three quarters of an inner radius: that of B, or of A if B has none. The centre of B then
+/// does not pass the surface of A.
 pub(crate) fn time_of_impact(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -156,7 +156,7 @@ enum Unswept {
     TooFast,
 }
 
-/// Relative to B's centre at the start.
+/// The two shapes with their motion, relative to B's centre at the start.
 fn swept_pair(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -222,7 +222,7 @@ fn radii(a: &SupportShape, b: &SupportShape) -> Fx {
     to_fx(a.radius + b.radius)
 }
 
-/// For shapes that start in contact. `None` if they overlap too deeply.
+/// Target for shapes that start in contact. `None` if they overlap too deeply.
 fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Option<Fx> {
     let inner = Some(b.inner_radius()).filter(|&inner| inner > 0).unwrap_or_else(|| a.inner_radius());
     let deepest = fx_mul(inner, fx!(-0.75));
@@ -230,7 +230,8 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits for its far ends.
+/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits for the far ends of the
+/// segment.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
@@ -253,7 +254,7 @@ struct SweptShape {
     curvature: Fx,
 }
 
-/// Relative to B's centre at the start.
+/// A shape at a moment of the tick, relative to B's centre at the start.
 struct Posed {
     support: SupportShape,
     centre: Vec2<Grid>,
@@ -335,7 +336,8 @@ fn positive_part(gap: Fx, speed: Fx, curvature: Fx, end: Fx) -> Fx {
         return Fx::ZERO;
     }
     let at_end = gap.saturating_add(fx_mul(speed.saturating_sub(fx_mul(curvature, end)), end));
-    // The function is concave, so it is positive between two points where it is. A few units cover the rounding.
+    // The function is concave, so it is positive between any two points where it is positive. A few units cover the
+    // rounding.
     if at_end > Fx::DELTA * 4 {
         return end;
     }

@@ -3,7 +3,7 @@
 use crate::body::Sides;
 use crate::math::{Fx, Orientation, Unit, Vec2, orientation};
 
-/// Relative to the centre of its own shape or of the shape that it meets, in world axes.
+/// A link in world axes, relative to the centre of its own shape or of the other shape of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) a: Vec2<Fx>,
@@ -14,7 +14,7 @@ pub(crate) struct Link {
     pub(crate) directions: Directions,
 }
 
-/// `None` if there is no such link or it has no length.
+/// Directions of a link and its neighbours. `None` if there is no such link or it has no length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Directions {
     pub(crate) before: Option<Vec2<Unit>>,
@@ -60,7 +60,7 @@ impl Link {
         let Link { a, b, before, after, .. } = *self;
         let own = right_of(a, b, place);
         let direction = b - a;
-        // The signs decide, and a saturated product keeps its sign.
+        // Only the signs matter, and a saturated product keeps its sign.
         let (corner, neighbour) = if (place - a).dot(direction) < 0 {
             (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
         } else if (place - b).dot(direction) > 0 {

@@ -38,7 +38,7 @@ impl Outline {
     }
 }
 
-/// First two vertices and normals. The other two are their opposites.
+/// First two vertices and normals of a box. The other two are their opposites.
 pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 2], &'a [Vec2<Unit>; 2]);
 
 /// [`BoxFaces`] by value.
@@ -82,7 +82,7 @@ pub(crate) struct Hull {
     direction: Vec2<Unit>,
     /// Whether the outline is four-sided and point-symmetric about the centre.
     is_box: bool,
-    /// Whether it is a box with nearly right angles, small enough for the SIMD path.
+    /// Whether the outline is a box with nearly right angles, small enough for the SIMD path.
     is_small_box: bool,
 }
 
@@ -126,7 +126,7 @@ impl Hull {
         self.is_small_box
     }
 
-    /// Counter-clockwise.
+    /// The next vertex, counter-clockwise.
     #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
@@ -153,7 +153,7 @@ impl Hull {
         Vec2::new(sum.x / count, sum.y / count)
     }
 
-    /// One edge in each direction, with opposite normals.
+    /// A segment: one edge in each direction, with opposite normals.
     pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
         let mut hull = Hull { count: 2, ..Self::empty() };
         hull.place_ends(a, b, direction);
@@ -281,7 +281,7 @@ impl PosedShape {
         }
     }
 
-    /// The result equals posing the shape again after a translation of its body.
+    /// Translates the shape. The result equals posing it again after a translation of its body.
     pub(crate) fn shift(&mut self, by: Vec2<Fx>) {
         self.centre += by;
         self.bounds = self.bounds.translated(by);
@@ -300,8 +300,8 @@ impl PosedShape {
         }
     }
 
-    /// Faces of a small box in its own frame, if its centre is its body's centre of mass: enough to pose it with the
-    /// body.
+    /// Faces of a small box in its own frame. `None` if the centre of the box is not its body's centre of mass. The
+    /// faces suffice to pose the box with the body.
     pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
         let Geometry::Polygon(polygon) = &shape.geometry else { return None };
         self.as_small_box()?;

@@ -114,7 +114,7 @@ impl SupportShape {
         points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
     }
 
-    /// In metres.
+    /// Extent of the shape along a direction in metres.
     pub(crate) fn extent(&self, direction: Vec2<Unit>) -> Fx {
         let along = self.points().iter().map(|&point| along(direction, point));
         let (least, most) = along.fold((Grid::MAX, Grid::MIN), |(a, b), x| (a.min(x), b.max(x)));
@@ -134,7 +134,7 @@ impl SupportShape {
     }
 }
 
-/// Counter-clockwise. Two points have one edge in each direction.
+/// Edges of a core, counter-clockwise. Two points have one edge in each direction.
 pub(in crate::collision) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
@@ -218,8 +218,8 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
     Vec2::new(part(n.x), part(n.y))
 }
 
-/// Distance of a point from a line, from the cross product with a vector along the line and that vector's length from
-/// [`scaled_along`].
+/// Distance of a point from a line. `cross` is the cross product with a vector along the line, and `scaled_length` the
+/// length of that vector from [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
     // Above 2^97 the height exceeds any distance of interest, and losing a few bits is harmless.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
@@ -230,7 +230,7 @@ pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
     Grid::from_bits(saturate_wide(bits))
 }
 
-/// From 0 to 1 in units of 2^-62, fine enough to locate a point on a line across the world.
+/// A fraction from 0 to 1 in units of 2^-62, fine enough to locate a point on a line across the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Fraction(i64);
 
@@ -239,7 +239,8 @@ impl Fraction {
     const FRAC_NBITS: u32 = 62;
     const ONE: i64 = 1 << Self::FRAC_NBITS;
 
-    /// Rounded down, for `0 <= numerator <= denominator != 0`. Bits of the denominator beyond 64 are dropped from both.
+    /// Rounded down, for `0 <= numerator <= denominator != 0`. If the denominator has more than 64 bits, both numbers
+    /// lose the excess bits.
     pub(in crate::collision) fn ratio(numerator: i128, denominator: i128) -> Self {
         let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
         let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);

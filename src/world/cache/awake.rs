@@ -14,13 +14,14 @@ use crate::world::state::State;
 pub(crate) struct AwakeSet {
     /// Enabled bodies that are kinematic, or dynamic and awake.
     bodies: Vec<u32>,
-    /// Enabled joints, except filter joints, between enabled bodies, one of them dynamic and awake, with mass.
+    /// Enabled joints between enabled bodies, of which at least one is dynamic, awake and has mass. Filter joints are
+    /// left out.
     joints: Vec<u32>,
     with_threshold: Vec<u32>,
     /// For each body slot, whether one of `joints` holds the body.
     held: Vec<bool>,
     is_current: bool,
-    /// Not false while there is a kinematic body.
+    /// Whether there may be a kinematic body. May stay true after the last one is gone.
     may_have_kinematic: bool,
 }
 
@@ -83,7 +84,7 @@ impl AwakeSet {
         &self.bodies
     }
 
-    /// Divides the bodies among threads. The shapes of a body may be outside of the range of its thread.
+    /// Divides the bodies among threads. A shape of a body may be outside of the slot range of the body's thread.
     pub(crate) fn shares(&self, state: &State, count: usize) -> SmallVec<[SlotShare<'_>; 1]> {
         let mut shape_end = 0;
         let mut share = |number: usize| {

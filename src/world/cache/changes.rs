@@ -7,11 +7,11 @@ use crate::math::Aabb;
 /// Changes since the last pair update that may affect the set of pairs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
-    /// The caches are new: every pair may have changed.
+    /// Whether every pair may have changed, because the caches are new.
     everything: bool,
-    /// A sleeping contact may have ended, or may have an active body.
+    /// Whether a sleeping contact may have ended, or may have got an active body.
     sleeping_contacts: bool,
-    /// Filters, sensors, kinds, masses or joints have changed, so that all pairs have to be checked again.
+    /// Whether all pairs have to be checked again, because filters, sensors, kinds, masses or joints have changed.
     rules: bool,
     /// Slots of shapes that may have new pairs, because their fat box, their body or its activity has changed. A slot
     /// may be listed twice.
@@ -46,7 +46,7 @@ impl Changes {
         &self.shapes
     }
 
-    /// Size in bytes of the memory outside of the struct.
+    /// Size in bytes of the list of shapes.
     pub(crate) fn list_bytes(&self) -> usize {
         size_of_val(&*self.shapes)
     }

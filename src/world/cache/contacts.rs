@@ -26,8 +26,8 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
     pub(crate) touched: &'a [ActiveContact],
 }
 
-/// Output of a narrow phase or of a thread, in the order of contacts. Aligned, so that no two threads write the same
-/// cache line.
+/// Output of a whole narrow phase or of one thread, in the order of contacts. Aligned, so that no two threads write the
+/// same cache line.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct NarrowPhaseOutput {
@@ -36,7 +36,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) contacts: Vec<u32>,
     /// Contacts that the solver has to solve.
     pub(crate) touching: Vec<ActiveContact>,
-    /// Possible hit events: the shapes must also push each other in this tick.
+    /// Possible hit events. An event is reported only if the shapes also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
@@ -55,7 +55,7 @@ pub(crate) struct Recycled {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingHit {
-    /// Index in the state.
+    /// Index of the contact in the state.
     pub(crate) contact: u32,
     pub(crate) event: HitEvent,
 }
@@ -71,7 +71,7 @@ impl ContactCache {
         }
     }
 
-    /// Empty after contacts were invalidated.
+    /// Output of the last narrow phase. Empty after contacts were invalidated.
     pub(crate) fn output(&self) -> &NarrowPhaseOutput {
         &self.output
     }

@@ -37,7 +37,7 @@ impl JointLinks {
         links
     }
 
-    /// The bodies must differ.
+    /// Adds a joint to the lists of its bodies, which must differ.
     pub(crate) fn add(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
         let (joint, a, b) = (joint.slot(), a.slot(), b.slot());
         debug_assert_ne!(a, b, "a joint is in two lists");

@@ -3,7 +3,7 @@
 /// Number of pairs per body that are assumed to fit into full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// Additional cost of further pairs, in ordinary pairs: measured on a thousand squares in one place.
+/// Additional cost of each further pair, as a number of ordinary pairs. Measured on a thousand squares in one place.
 const CROWDED_WORK: u64 = 64;
 
 /// Work units of comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.

@@ -32,7 +32,7 @@ pub(crate) struct PredictedMotion {
 }
 
 impl PredictedMotion {
-    /// `per_second` is `1 / tick_rate`.
+    /// Motion of a body at its current velocity. `per_second` is `1 / tick_rate`.
     #[inline]
     pub(crate) fn of(body: &Body, per_second: Reciprocal) -> Self {
         let step = |speed: Speed| per_second.times(speed);
@@ -61,7 +61,7 @@ impl PredictedMotion {
         self.shift + arm.perp().scale(self.turn)
     }
 
-    /// Size of the rotation in radians.
+    /// Absolute value of the rotation in radians.
     pub(crate) fn turned(&self) -> Fx {
         widen(self.turn).saturating_abs()
     }
@@ -206,8 +206,8 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Approach in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest relative movement at which a contact keeps its manifold. It does not apply to a round shape on a body
-    /// that is not dynamic.
+    /// Largest relative movement at which a contact keeps its manifold. This limit does not apply to a round shape on a
+    /// body that is not dynamic.
     pub(crate) kept: Length,
 }
 
@@ -270,7 +270,7 @@ pub(crate) struct MotionCache {
     bodies: Vec<PredictedMotion>,
     shapes: Vec<ShapeMotion>,
     moving_bodies: Vec<u32>,
-    /// Not false while there is a sensor.
+    /// Whether there may be a sensor. Stays true after the last one is gone.
     may_have_sensors: bool,
 }
 
@@ -303,7 +303,8 @@ impl MotionCache {
         split_at_ends(&mut self.shapes, ends)
     }
 
-    /// Divides bodies and shapes into ranges that end at the given slots of a body and of a shape.
+    /// Divides bodies and shapes into ranges. Each item of `ends` has the end of a range of body slots and of a range
+    /// of shape slots.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = [u32; 2]> + Clone,

@@ -30,9 +30,9 @@ impl PairCache {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairBuffers {
     pub(crate) pairs: Vec<Pair>,
-    /// Contacts to add to the active ones.
+    /// Contacts to add to the active contacts.
     pub(crate) fresh: Vec<Contact>,
-    /// Contacts to add to the sleeping ones.
+    /// Contacts to add to the sleeping contacts.
     pub(crate) sleeping_contacts: Vec<Contact>,
     pub(crate) merged: MergedContacts,
 }
@@ -102,8 +102,8 @@ impl NonCollidingPairs {
     }
 
     /// Whether two shapes may have a contact. They need different, enabled bodies and filters that accept each other.
-    /// With a sensor, one shape must detect the other, and not both bodies may be fixed. Without one, a body must have
-    /// mass, and no joint may keep the bodies from colliding.
+    /// If there is a sensor, one shape must detect the other, and at least one body must not be fixed. Otherwise at
+    /// least one body must have mass, and no joint may keep the bodies from colliding.
     pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());

@@ -88,7 +88,7 @@ pub(crate) struct Sweeps {
     pub(crate) starts: Vec<Pose>,
     /// Bodies to be swept against kinematic bodies.
     pub(crate) relative: Vec<SweptBody>,
-    /// Bullets are swept after all other bodies have been moved.
+    /// Bullets, which are swept after all other bodies have been moved.
     pub(crate) bullets: Vec<SweptBody>,
     /// Shapes that have left their fat box, if there may be sensors.
     pub(crate) left_boxes: Vec<u32>,

@@ -120,15 +120,15 @@ impl ShapeCache {
         self.broad_phase.remove(shape);
     }
 
-    /// Takes the memory of the queue, for a restore that lists fat boxes in it.
+    /// Takes the emptied queue, so that a restore can list fat boxes in its memory.
     pub(crate) fn take_refits(&mut self) -> Vec<(u32, Aabb)> {
         let mut refits = core::mem::take(&mut self.refits);
         refits.clear();
         refits
     }
 
-    /// Updates poses after a restore. `shifted` lists bodies that were only translated, `moved` rotated ones, and
-    /// `redefined` those that may have been added, removed or changed otherwise.
+    /// Updates poses after a restore. `shifted` lists bodies that were only translated, `moved` lists bodies that were
+    /// rotated, and `redefined` lists bodies that may have been added, removed or changed otherwise.
     pub(crate) fn restore_poses(
         &mut self,
         state: &State,
@@ -155,8 +155,8 @@ impl ShapeCache {
         }
     }
 
-    /// Updates the broad phase after a restore. `changed` lists fat boxes that differ, `redefined` shapes that may have
-    /// been added or removed, or whose bodies were redefined.
+    /// Updates the broad phase after a restore. `changed` lists fat boxes that differ. `redefined` lists shapes that
+    /// may have been added or removed, or whose bodies were redefined.
     pub(crate) fn restore_boxes(&mut self, state: &State, changed: Vec<(u32, Aabb)>, redefined: &[u32]) {
         self.refits = changed;
         let ShapeCache { broad_phase, refits, .. } = self;

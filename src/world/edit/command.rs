@@ -34,7 +34,7 @@ pub enum Command {
     },
     /// Calls [`World::spawn_each`].
     SpawnEach {
-        /// Definition of the bodies, whose position and angle are not used.
+        /// Definition of the bodies. Its position and angle are not used.
         body: BodyDef,
         /// Definitions of the shapes of each body.
         shapes: Vec<ShapeDef>,
@@ -65,7 +65,7 @@ pub enum Command {
     },
     /// Calls [`World::add_joint_each`].
     AddJointEach {
-        /// Definition of the joints, whose bodies are not used.
+        /// Definition of the joints. Its bodies are not used.
         joint: JointDef,
         /// The two bodies of each joint.
         ends: Vec<(BodyId, BodyId)>,
@@ -232,7 +232,7 @@ pub enum Command {
     SetArea {
         /// The sensor.
         shape: ShapeId,
-        /// New effect of the sensor on the bodies in it, or `None` for a sensor that only detects.
+        /// New effect of the sensor on the bodies inside it, or `None` for a sensor that only detects.
         area: Option<Area>,
     },
 }

@@ -75,7 +75,7 @@ impl World {
         Ok(id)
     }
 
-    /// Adds one body for each pose. A recording stores their definition once.
+    /// Adds one body for each pose. A recording stores the common definition once.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -137,7 +137,7 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds one joint for each pair of bodies. A recording stores their definition once.
+    /// Adds one joint for each pair of bodies. A recording stores the common definition once.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.

@@ -11,7 +11,7 @@ impl World {
     /// Removes a body with its shapes and joints.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world.
+    /// [`WorldError::StaleBody`] if the body is not in the world.
     #[doc(alias = "destroy_body")]
     pub fn despawn(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
@@ -53,7 +53,7 @@ impl World {
     /// Removes a joint.
     ///
     /// # Errors
-    /// [`WorldError::StaleJoint`] if it is not in the world.
+    /// [`WorldError::StaleJoint`] if the joint is not in the world.
     #[doc(alias = "destroy_joint")]
     pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
         let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
@@ -63,7 +63,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes shapes, but not from the list of their body.
+    /// Removes shapes, but leaves their handles in the list of their body.
     fn delete_shapes(&mut self, ids: &[ShapeId]) {
         self.end_contacts(ids);
         for &id in ids {

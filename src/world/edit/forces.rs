@@ -118,9 +118,9 @@ impl World {
         Ok(())
     }
 
-    /// Sets the pose of a kinematic body after the next tick: the position of its origin in metres, and its rotation.
-    /// The body pushes dynamic bodies on its way, and stops at the target unless it gets another one. It rotates in the
-    /// direction of the smaller angle.
+    /// Sets the pose that a kinematic body reaches in the next tick: the position of its origin in metres, and its
+    /// rotation. The body pushes dynamic bodies on its way, and stops at the target unless it gets another target. The
+    /// body rotates in the direction of the smaller angle.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose is

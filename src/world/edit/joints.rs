@@ -38,8 +38,8 @@ impl World {
         self.joint_along(a, b, kind, anchor, Vec2::new(Fx::ONE, Fx::ZERO))
     }
 
-    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint in world coordinates. Its length does not
-    /// matter. The zero vector is the x axis.
+    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint in world coordinates. The length of the
+    /// axis does not matter. The zero vector means the x axis.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.
@@ -107,7 +107,7 @@ impl World {
     /// Enables a disabled joint, which starts without impulses, and wakes its bodies.
     ///
     /// # Errors
-    /// [`WorldError::StaleJoint`] if it is not in the world.
+    /// [`WorldError::StaleJoint`] if the joint is not in the world.
     pub fn enable_joint(&mut self, id: JointId) -> Result<(), WorldError> {
         self.change_joint(id, |def| {
             def.enabled = true;
@@ -118,7 +118,7 @@ impl World {
     /// Takes a joint out of the simulation until [`World::enable_joint`], and wakes its bodies.
     ///
     /// # Errors
-    /// [`WorldError::StaleJoint`] if it is not in the world.
+    /// [`WorldError::StaleJoint`] if the joint is not in the world.
     pub fn disable_joint(&mut self, id: JointId) -> Result<(), WorldError> {
         self.change_joint(id, |def| {
             def.enabled = false;
@@ -126,8 +126,8 @@ impl World {
         })
     }
 
-    /// Sets the target speed in rad/s or m/s of a joint's motor; a motor joint has an angular one. A change wakes the
-    /// bodies.
+    /// Sets the target speed in rad/s or m/s of a joint's motor. In a motor joint, this is the angular motor. A change
+    /// wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the speed is out of range.
@@ -139,8 +139,8 @@ impl World {
         })
     }
 
-    /// Sets the largest force in N or torque in N m of a joint's motor; a motor joint has an angular one. A change
-    /// wakes the bodies.
+    /// Sets the largest force in N or torque in N m of a joint's motor. In a motor joint, this is the angular motor. A
+    /// change wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.

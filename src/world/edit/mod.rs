@@ -46,8 +46,8 @@ impl World {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let body = bodies.at(slot);
         for shape in &body.shapes {
-            // `redefine`, not `at_mut`: the body may have been fixed until now, and snapshots store its fat box in a
-            // page.
+            // `redefine`, not `at_mut`: the body may have been fixed until now, and snapshots store fat boxes of fixed
+            // bodies in pages.
             let shape = shapes.redefine(shape.slot());
             shape.fat = fat_box(&shape.def, body, config);
         }

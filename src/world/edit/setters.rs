@@ -35,7 +35,7 @@ impl World {
     /// Replaces the number that the game stores with a body. It does not affect the simulation.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world.
+    /// [`WorldError::StaleBody`] if the body is not in the world.
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) -> Result<(), WorldError> {
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.user_data = user_data;
         Ok(())
@@ -123,7 +123,7 @@ impl World {
     /// applied forces and its target. It has no contacts, its joints are not solved, and no query finds it.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world.
+    /// [`WorldError::StaleBody`] if the body is not in the world.
     pub fn disable(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         if !body.enabled {
@@ -147,7 +147,7 @@ impl World {
     /// Puts a disabled body back into the simulation at its pose.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world.
+    /// [`WorldError::StaleBody`] if the body is not in the world.
     pub fn enable(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?;
         if !body.enabled {
@@ -163,7 +163,7 @@ impl World {
     /// are in one of its areas.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world.
+    /// [`WorldError::StaleBody`] if the body is not in the world.
     pub fn wake(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let is_dynamic = body.is_dynamic();
@@ -255,8 +255,8 @@ impl World {
         self.change_shape(id, |def| def.filter = filter)
     }
 
-    /// Replaces the effect of a sensor on the bodies in it; `None` for a sensor that only detects. Wakes the bodies in
-    /// the area, unless the effect is the same.
+    /// Replaces the effect of a sensor on the bodies inside it; `None` for a sensor that only detects. Wakes the bodies
+    /// in the area, unless the effect is the same.
     ///
     /// ```
     /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -281,8 +281,9 @@ impl World {
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Prepares for a change of the mass between 0 and a positive value: two bodies without mass have no contact and no
-    /// acting joint. Wakes overlapping and joined bodies, and makes the next pair update check all pairs.
+    /// Prepares for a change of the mass between 0 and a positive value, because two bodies without mass have no
+    /// contact and no acting joint. Wakes overlapping and joined bodies, and makes the next pair update check all
+    /// pairs.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());

@@ -32,7 +32,7 @@ pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     unite_touching(state, union, &state.contacts);
 }
 
-/// Unites the bodies of contacts with points, and the bodies of areas with those in them.
+/// Unites the bodies of contacts with points, and the bodies of areas with the bodies on which the areas act.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
     let connects =
         |contact: &&Contact| contact.count > 0 || (contact.touching && state.has_area(contact.shapes));
@@ -78,7 +78,7 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
     }
 }
 
-/// Moves contacts without an active body to the sleeping ones, without their manifolds.
+/// Moves contacts without an active body to the sleeping contacts, and drops their manifolds.
 fn put_contacts_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let buffers = &mut scratch.pairs.buffers;
     buffers.sleeping_contacts.clear();

@@ -6,7 +6,7 @@ use crate::collision::{Contact, Pair};
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
-/// Visited boxes that cost one work unit.
+/// Number of visited boxes that together cost one work unit.
 const VISITS_PER_WORK: u64 = 4;
 
 /// Wakes an island, whose sleeping contacts become active at the next pair update.

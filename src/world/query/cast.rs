@@ -142,9 +142,10 @@ impl World {
     /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
     /// stops 0.1 mm before it touches.
     ///
-    /// A shape that the probe touches at the start stops it only if it moves into that shape, so that probes slide
-    /// along chains and flush tiles. [`QueryFilter::initial_overlap`] selects another treatment of overlaps at the
-    /// start. A chain link that is solid from one side is met only by probes whose middle is on that side.
+    /// A shape that the probe touches at the start stops the probe only if the probe moves into that shape, so that
+    /// probes slide along chains and flush tiles. [`QueryFilter::initial_overlap`] selects another treatment of
+    /// overlaps at the start. A chain link that is solid from one side is met only by probes whose middle is on that
+    /// side.
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]
@@ -158,8 +159,8 @@ impl World {
         self.first_along(probe, translation, filter, Rest::CAST, |_, _, _| true)
     }
 
-    /// Considers shapes for which `accept` holds. `accept` gets the shape, the normal of the hit, and the support
-    /// shapes of the shape and of the probe at the start, relative to the probe's position.
+    /// First hit of a moving probe on a shape for which `accept` holds. `accept` gets the shape, the normal of the hit,
+    /// and the support shapes of the shape and of the probe at the start, relative to the probe's position.
     pub(super) fn first_along(
         &self,
         probe: &Probe,
@@ -265,7 +266,7 @@ fn earlier<H: Copy>(
     best.filter(|best| (best.order, shape_of(&best.hit)) <= (found.order, shape)).unwrap_or(found)
 }
 
-/// Rounded up, so that no hit at the same fraction is missed.
+/// The fraction rounded up, so that no hit at the same fraction is missed.
 fn rounded_up(fraction: Fx) -> Unit {
     Unit::from_bits(saturate((fraction.to_bits() >> 2) + 1)).min(Unit::ONE)
 }

@@ -9,9 +9,10 @@
 //! at any slope. Along other surfaces it slides without being deflected upwards. The rest of a walk into a wall is
 //! dropped.
 //!
-//! A character stores the pose that the body of its ground had at its last move. The next move starts with the
-//! displacement of the point under its feet since then. The velocity of the body would not be sufficient: it is 0 after
-//! [`World::move_to`], and does not give the displacement of a platform that turns or stops.
+//! A character stores the pose that the body of its ground had at the last move. The next move starts with the
+//! displacement, since the last move, of the point under the character's feet. The velocity of the body would not be
+//! sufficient: that velocity is 0 after [`World::move_to`], and does not give the displacement of a platform that turns
+//! or stops.
 
 use alloc::vec::Vec;
 
@@ -31,7 +32,7 @@ pub(super) const SLOPE_ROUNDING: Unit = Unit::lit("0.0005");
 /// Largest step height and snap distance in metres.
 const HEIGHT_MAX: Fx = fx!(100);
 
-/// Geometry and abilities of a character. It is upright, and `y` is up.
+/// Geometry and abilities of a character. The character is upright, and `y` is up.
 ///
 /// ```
 /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

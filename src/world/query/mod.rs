@@ -45,7 +45,7 @@ pub struct QueryFilter {
     pub mask: u64,
     /// Whether the query sees sensors.
     pub sensors: bool,
-    /// A body that the query does not see, usually its own.
+    /// A body that the query does not see, usually the one that makes the query.
     pub except: Option<BodyId>,
     /// Further bodies that the query does not see.
     pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
@@ -53,7 +53,8 @@ pub struct QueryFilter {
     pub initial_overlap: InitialOverlap,
 }
 
-/// Treatment of shapes that contain or overlap the start of a ray or cast. Hits mark them by `starts_inside`.
+/// Treatment of shapes that contain or overlap the start of a ray or cast. Hits on such shapes have `starts_inside`
+/// set.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};

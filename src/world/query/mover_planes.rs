@@ -136,7 +136,7 @@ impl World {
     }
 }
 
-/// A length or speed along a surface, to the right on ground.
+/// Vector of the given length or speed along a surface. On ground it points to the right.
 pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
     Vec2::new(normal.y, -normal.x).widen().scale(length)
 }
@@ -227,8 +227,8 @@ fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     translation
 }
 
-/// Returns the velocity nearest to a given one that enters no rigid plane that has pushed. Unlike that of Box2D's
-/// `b2ClipVector`, the result does not depend on the order of the planes.
+/// Returns the velocity nearest to a given one that does not enter the rigid planes that have pushed. Unlike that of
+/// Box2D's `b2ClipVector`, the result does not depend on the order of the planes.
 #[must_use]
 pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
     let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);

@@ -4,8 +4,9 @@
 //! tile or chain link. A hit of a cast that starts in contact is therefore confirmed by a second cast, from where the
 //! shape just rests on the touched surfaces. An obstacle that the second cast does not meet is a seam.
 //!
-//! Contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it. Between a floor
-//! and a ceiling the shape cannot be lifted off both, so that there is also a second cast for each surface alone.
+//! Contacts that the cast leaves or slides along lift the shape. A contact that the cast moves into stops the shape.
+//! Between a floor and a ceiling the shape cannot be lifted off both, so that there is also a second cast for each
+//! surface alone.
 
 use smallvec::SmallVec;
 
@@ -39,7 +40,7 @@ impl Rest {
     pub(super) const TURNING: Rest =
         Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
-    /// For characters. Each approach would bring a character closer to the surface.
+    /// For characters, which must not approach: each cast would bring a character closer to the surface.
     pub(super) const CHARACTER: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 
@@ -65,8 +66,8 @@ const DEPTH_MAX: Fx = fx!(0.02);
 pub(super) struct Resting {
     /// The shape at the start of the first cast, relative to the position of the probe.
     moving: SupportShape,
-    /// Displacements in metres to where the shape rests on all touched surfaces and, if there are several, to where it
-    /// rests on each one that it has to move away from.
+    /// Displacements in metres to resting positions. In the first, the shape rests on all touched surfaces. If there
+    /// are several surfaces, there is one more displacement for each surface that the shape has to move away from.
     pub(super) lifts: SmallVec<[Vec2<Fx>; 4]>,
     pub(super) translation: Vec2<Fx>,
 }

@@ -78,7 +78,8 @@ pub enum TimeOfImpact {
 }
 
 impl World {
-    /// Returns a shape of the world as a probe at its current pose. `None` if it was removed or its body is disabled.
+    /// Returns a shape of the world as a probe at its current pose. `None` if the shape was removed or its body is
+    /// disabled.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

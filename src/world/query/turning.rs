@@ -20,9 +20,9 @@ impl World {
     /// Returns the first shape that a probe meets as it moves along a translation in metres while it turns about its
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
-    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops it once it has
-    /// moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m from its position,
-    /// hits may be early.
+    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that the probe touches at the start stops the probe
+    /// once it has moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m from
+    /// its position, hits may be early.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};

@@ -23,10 +23,10 @@ const LEFT_OVER: Fx = fx!(0.000001);
 /// Largest distance in metres from ground on which a character stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
 
-/// Effect of shapes that overlap the character on a cast.
+/// Effect on a cast of the shapes that overlap the character.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Overlaps {
-    /// They stop a cast that goes deeper.
+    /// Overlapping shapes stop a cast that goes deeper.
     Stop,
     /// Shapes of fixed bodies stop a cast that goes deeper. Others, such as the platforms of a train, have moved over
     /// the character and push it out after it has been carried.
@@ -81,7 +81,7 @@ impl<'a> Walk<'a> {
         self.surfaces.into_iter().map(|(_, plane)| plane).collect()
     }
 
-    /// Moves the character with the point under its feet, or until it meets a shape of another body.
+    /// Moves the character with the point under its feet, at most until the character meets a shape of another body.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -102,7 +102,7 @@ impl<'a> Walk<'a> {
         Some(Carrier { body: ground.body, velocity })
     }
 
-    /// Moves the character out of overlapping shapes, or until it meets another shape.
+    /// Moves the character out of overlapping shapes, at most until it meets another shape.
     pub(super) fn push_out(&mut self) {
         let rate = i64::from(self.world.state.config.tick_rate);
         for _ in 0..TURNS_MAX {
@@ -324,8 +324,8 @@ impl<'a> Walk<'a> {
         self.probe = self.probe.at(self.probe.position() + by);
     }
 
-    /// Whether the character passes through a shape that is solid from one side: it is on the other side, or still
-    /// overlaps it.
+    /// Whether the character passes through a shape that is solid from one side. It passes if it is on the other side,
+    /// or still overlaps the shape.
     fn passes(&self, id: ShapeId, normal: Vec2<Unit>, overlaps: bool) -> bool {
         let Some(shape) = self.world.shape(id) else { return true };
         let one_sided = matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. });
@@ -337,9 +337,9 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Horizontal velocity relative to the ground of a character that lands: the difference of both velocities, limited to
-/// between 0 and the character's own. A belt carries a character that drops straight down on it at once. A character
-/// that jumps straight up in a moving train stands still in the train.
+/// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to
+/// the range between 0 and the character's own velocity. A belt carries a character that drops straight down on it at
+/// once. A character that jumps straight up in a moving train stands still in the train.
 fn taken_along(velocity: Fx, ground: Fx) -> Fx {
     velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }

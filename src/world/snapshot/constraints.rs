@@ -5,7 +5,7 @@
 //! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (14 x i32).
 //!
 //! Each joint takes one byte of flags, then its impulses that are not 0 (i32 each) and its turns (i32 or i64). The
-//! flags mark the impulses that are not 0, and turns of 8 bytes.
+//! flags mark the impulses that are not 0, and tell whether the turns take 8 bytes.
 
 use alloc::vec::Vec;
 

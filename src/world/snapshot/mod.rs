@@ -3,7 +3,7 @@
 //! Data that ticks change (poses, velocities, fat boxes, impulses) is packed into buffers: see `bodies.rs` and
 //! `constraints.rs`. The other data of bodies, shapes, joints and islands is copied in pages of 32 slots, which
 //! snapshots share until they change (`body/arena/pages.rs`). Sleeping contacts are shared as a whole
-//! (`sleeping_contacts.rs`). Buffers are hashed when they are written, shared data once for all snapshots.
+//! (`sleeping_contacts.rs`). Buffers are hashed when they are written. Shared data is hashed once for all snapshots.
 
 mod bodies;
 mod bytes;

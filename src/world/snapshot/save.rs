@@ -17,8 +17,8 @@ impl World {
         snapshot
     }
 
-    /// Replaces a snapshot of this or another world by a copy of the state and its hash. Copies data that ticks change,
-    /// and other data that has changed since it was last saved or hashed.
+    /// Replaces a snapshot of this or another world by a copy of the state and its hash. Copies the data that ticks
+    /// change. Copies other data only if it has changed since it was last saved or hashed.
     ///
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};

@@ -12,7 +12,7 @@ use super::constraints::{pack_contacts, unpack_contacts};
 use crate::collision::Contact;
 use crate::hash::StateHash;
 
-/// Contacts without an active body, sorted by pair, and their cached packed form. Mutable access drops the latter.
+/// Contacts without an active body, sorted by pair, and their cached packed form. Mutable access drops the packed form.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct SleepingContacts {

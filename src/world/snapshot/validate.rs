@@ -92,7 +92,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
         range.contains(&v.x) && range.contains(&v.y)
     };
-    // Edits keep the origin within the world extent, ticks the centre of mass. The tolerance covers their distance.
+    // Edits keep the origin of a body within the world extent, and ticks keep its centre of mass there. The tolerance
+    // covers the distance between the two.
     let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;

@@ -1,9 +1,9 @@
-//! Areas: the effects of sensors with an [`Area`] on the bodies in them.
+//! Areas: the effects of sensors with an [`Area`] on the bodies inside them.
 //!
 //! Forces are computed once per tick, at the poses that the velocities predict for a fraction `(s - 1) / (2 s)` of the
 //! tick: the mean of the times at which `s` sub-steps begin. With the poses at the start of a tick of `h` seconds, a
-//! spring of angular frequency `omega`, such as a floating box, would gain `h^2 omega^2 (s - 1) / (2 s)` of its energy
-//! in each tick.
+//! spring of angular frequency `omega`, such as a floating box, would gain the fraction `h^2 omega^2 (s - 1) / (2 s)`
+//! of its energy in each tick.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};
@@ -142,7 +142,8 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // A rounded outline is measured as a polygon, whose share that is inside scales the true area.
+                // A rounded outline is measured as a polygon. The share of the polygon that is inside scales the true
+                // area.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);

@@ -24,11 +24,11 @@ const SWEPT_MIN: Fx = fx!(0.0005);
 /// Work units of a time of impact: some 2 µs, up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
-/// Shapes near a sweep that cost one work unit.
+/// Number of shapes near a sweep that together cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
 
-/// The sweep of a body that may be fast. A body is fast if one of its points may move further than [`SWEPT_MIN`] and
-/// half of the inner radius of its thinnest solid shape. `turn` is in units of 2^-32 turns.
+/// The sweep of a body that may be fast. A body is fast if one of its points may move further than both [`SWEPT_MIN`]
+/// and half of the inner radius of its thinnest solid shape. `turn` is in units of 2^-32 turns.
 pub(super) fn swept_body(
     slot: u32,
     body: &Body,
@@ -65,7 +65,7 @@ fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> b
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
 }
 
-/// Position at the end of the tick of a point that a body carries from a fraction of the tick on.
+/// Position of a point at the end of the tick, if a body carries it from a fraction of the tick on.
 fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     let (before, turned_before) = sweep.at(fraction);
     let (after, turned_after) = sweep.at(Fx::ONE);
@@ -188,7 +188,8 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // An exhausted meter need not end the search for a shape: the budget covers comparing all shapes of the world.
+        // The meter may be exhausted here without ending the search for this shape: the budget covers comparing all
+        // shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first

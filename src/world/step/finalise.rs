@@ -8,7 +8,7 @@ use crate::world::cache::{Extents, Finalised, PoseRange, Scratch, SweptBody};
 use crate::world::movement::{cover_shape, move_body};
 use crate::world::state::State;
 
-/// Moves the awake bodies, fast ones up to their first impact.
+/// Moves the awake bodies. Fast bodies stop at their first impact.
 pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
     scratch.sweeps.relative.clear();

@@ -10,7 +10,7 @@
 //! s(0) = s(f) + f (approach in the tick)
 //! ```
 //!
-//! The time follows by conservative advancement (B. Mirtich, 1996): the separation along a fixed axis is a lower bound
+//! The time is found by conservative advancement (B. Mirtich, 1996): the separation along a fixed axis is a lower bound
 //! of the distance.
 
 use super::speculative::{Side, SpeculativePair, approach};
@@ -121,8 +121,8 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point closes, as the bits of a [`Unit`], given the fraction `from` of its
-/// separation. `None` if it does not close within the tick.
+/// The fraction of the tick at which a point closes, as the bits of a [`Unit`]. `from` is the fraction at which the
+/// point has its separation. `None` if it does not close within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
     let time = from.saturating_add(rest);

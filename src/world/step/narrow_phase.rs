@@ -16,7 +16,7 @@ use crate::world::cache::{
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
-/// Smallest number of contacts for a thread, except the last one.
+/// Smallest number of contacts for a thread, except for the last thread.
 const CONTACTS_MIN: usize = 512;
 
 /// Number of contacts in a block: large enough that few SIMD lanes stay empty, small enough for the cache.

@@ -1,8 +1,8 @@
 //! Pair update: adds and removes contacts so that they match the overlaps of fat boxes.
 //!
-//! `State::contacts` has a contact for every pair of shapes whose fat boxes overlap, of which at least one is on an
-//! active body, and which [`NonCollidingPairs::may_touch`] accepts, up to the pair limit. A contact without an active
-//! body is in `State::sleeping_contacts`. The result is a function of the state:
+//! `State::contacts` has a contact for every pair of shapes with overlapping fat boxes that
+//! [`NonCollidingPairs::may_touch`] accepts, if at least one of the two bodies is active, up to the pair limit. A
+//! contact without an active body is in `State::sleeping_contacts`. The result is a function of the state:
 //! [`Changes`](crate::world::cache::Changes) only records where contacts may have to be added or removed.
 
 use crate::collision::{Contact, Moved, Pair};
@@ -79,9 +79,9 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
 
 enum PairChange {
     Stays,
-    /// Its fat boxes do not overlap, or its shapes may not collide.
+    /// The fat boxes of the pair do not overlap, or its shapes may not collide.
     Ends,
-    /// Neither of its bodies is active.
+    /// Neither body of the pair is active.
     Rests,
 }
 
@@ -153,7 +153,7 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Ends the contacts beyond the limit, in the largest slots.
+/// Ends the contacts beyond the limit, which are those in the largest slots.
 fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
     let limit = state.config.pair_limit as usize;
     state.pairs_left_out = left_out || state.contacts.len() > limit;

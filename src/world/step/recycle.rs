@@ -15,18 +15,19 @@ pub(super) struct Recycling<'a> {
     rolls: bool,
     /// Change of a lever arm, in metres, up to which the contact keeps the arm.
     arm_tolerance: Length,
-    /// Movement of the shapes since their manifold was computed, in metres, up to which the contact keeps it. Negative
-    /// if the shapes move too fast.
+    /// Movement of the shapes since their manifold was computed, in metres, up to which the contact keeps the manifold.
+    /// Negative if the shapes move too fast.
     movement_max: Length,
 }
 
 impl<'a> Recycling<'a> {
     /// An arm is kept while it changes by at most a 64th of the smaller shape's extent. A manifold is kept while the
-    /// relative movement, including that in this tick, is at most that 64th and a quarter of the speculative distance.
+    /// relative movement, including that in this tick, is at most that 64th and at most a quarter of the speculative
+    /// distance.
     ///
     /// If a round shape may roll on a body that is not dynamic, both limits are a 256th of that 64th: an outdated
-    /// normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between dynamic bodies
-    /// they are not reduced, because plates on rollers are stable only with kept arms.
+    /// normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between dynamic bodies the
+    /// limits are not reduced, because plates on rollers are stable only with kept arms.
     ///
     /// Nothing is kept on a kinematic body that turns, because arms that lag behind give the wrong velocity at the
     /// contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.

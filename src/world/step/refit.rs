@@ -1,4 +1,4 @@
-//! Fat boxes: every shape that may leave its fat box in the tick at its current velocity gets a new one.
+//! Fat boxes: every shape that may leave its fat box in the tick at its current velocity gets a new fat box.
 //!
 //! The swept AABB of a shape is its AABB, extended by the translation of its body, by the largest movement through
 //! rotation, and by the speculative distance.

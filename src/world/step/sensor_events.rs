@@ -1,6 +1,6 @@
 //! Sensor events: shapes that overlap a sensor at the end of the tick, or that crossed it during the tick.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
+//! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
 //! those of overlapping fat boxes, which cover the predicted motion. A shape that has left its fat box is also compared
 //! with all shapes along its path.
 
@@ -18,7 +18,7 @@ use crate::world::state::{Side, State};
 /// Work units of following a pair without a contact.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Comparisons of shapes outside of their fat boxes that cost one work unit.
+/// Number of comparisons of shapes outside of their fat boxes that together cost one work unit.
 const COMPARED_PER_WORK: u64 = 16;
 
 /// Reports overlaps with sensors, once all bodies have been moved.
@@ -230,7 +230,8 @@ fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
             ControlFlow::Continue(())
         });
     }
-    // A new fat box need not cover the path, on which the shape may have met another one that has left its box.
+    // The new fat box need not cover the path. On the path, the shape may have met another shape that has also left its
+    // box.
     let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
     for &sensor in left.iter().filter(is_sensor) {
         left.iter().for_each(|&shape| consider(sensor, shape));

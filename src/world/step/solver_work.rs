@@ -3,16 +3,16 @@
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for the bias pass and
-/// for the relax pass, in several rounds if it has limits or motors.
+/// Work units in each sub-step of a joint that is solved in a block. A full block of 96 rows factors its matrix for the
+/// bias pass and for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
-/// Active and sleeping contacts.
+/// Number of active and sleeping contacts.
 pub(super) fn pairs(state: &State) -> u64 {
     count(state.contacts.len() + state.sleeping_contacts.len())
 }
 
-/// Counts the work of new pairs and of joints in blocks. Returns whether the budget covers it.
+/// Counts the work of new pairs, and of the joints that are solved in blocks. Returns whether the budget covers it.
 pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> bool {
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));

@@ -49,7 +49,7 @@ fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
     i64::from(x.to_bits())
 }
 
-/// Excess of fraction bits of a rotation times a lever arm over a step.
+/// Number of fraction bits of a rotation times a lever arm beyond those of a step.
 const TURN_BITS: u32 = Travel::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
 pub(super) struct SpeculativePair<'a> {

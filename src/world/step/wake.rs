@@ -7,8 +7,8 @@ use crate::world::cache::Scratch;
 use crate::world::islands::wake_island;
 use crate::world::state::State;
 
-/// Wakes the islands that active bodies touch, then the islands that those touch, and so on. Each round after the first
-/// checks only pairs of bodies woken in the previous round.
+/// Wakes the islands that active bodies touch, then the islands that the woken bodies touch, and so on. Each round
+/// after the first checks only pairs of bodies woken in the previous round.
 pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     if state.islands.len() == 0 {
         return false;
@@ -37,7 +37,7 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     any
 }
 
-/// Lists the contacts of solid shapes or areas that have a sleeping body.
+/// Lists the contacts with a sleeping body, between two solid shapes or between an area and a shape on which it acts.
 fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     let motion = scratch.shapes.motion();
     let has_sleeper = |contact: &&Contact| {
@@ -50,7 +50,8 @@ fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pa
     pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
 }
 
-/// Finds the pairs of solid shapes or areas between sleeping bodies and those woken since change `first_change`.
+/// Finds the pairs of a sleeping body and a body woken since change `first_change`: two solid shapes, or an area and a
+/// shape on which it acts.
 fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
     let Scratch { shapes, pairs: cache, .. } = scratch;
     let woken = Moved::Slots(&cache.changes.shapes()[first_change..]);

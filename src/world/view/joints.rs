@@ -96,8 +96,8 @@ impl World {
         Some(joint.reaction(a, b, &tuning))
     }
 
-    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted, or 0. For
-    /// example, the torque of a motor without the force that holds the hinge together.
+    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted, or 0. An
+    /// example is the torque of a motor without the force that holds the hinge together.
     #[doc(alias = "motor torque")]
     #[must_use]
     pub fn joint_part_force(&self, id: JointId, part: JointPart) -> Option<(Vec2<Fx>, Fx)> {

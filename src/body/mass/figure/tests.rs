@@ -35,8 +35,8 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     Polygon::hull(&points).ok()?.rounded(rng.range(fx!(0.002), extent)).ok()
 }
 
-/// Twice the area and the squared radius of gyration, in m² with 44 fraction bits, of a rectangle rounded by `r`. Its
-/// half extents `a` and `b`, and `r`, are in units of `unit`.
+/// Returns `(2 A, k²)` of a rectangle with half extents `a` and `b`, rounded by `r`. The arguments are in units of
+/// `unit`, and the results in m² with 44 fraction bits.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
@@ -129,7 +129,7 @@ fn symmetric_shapes_keep_their_centre() {
     assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
 }
 
-/// The outline with at least 4096 chords per turn, a relative error of its sectors of at most 4e-7.
+/// The outline with at least 4096 chords per turn. The relative error of its sectors is at most 4e-7.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();
@@ -164,7 +164,7 @@ fn a_polygon_along_the_outline_has_the_same_mass() {
     assert!(compared > 250, "expected over 250 hulls, got {compared}");
 }
 
-/// Lengths are in units of 2^-22 m.
+/// Whether a point is in the polygon. Coordinates are in units of 2^-22 m.
 fn contains(polygon: &Polygon, (x, y): (i128, i128)) -> bool {
     let vertices = polygon.vertices();
     let r = i128::from(polygon.radius().to_bits());

@@ -14,8 +14,8 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling if that shrinks the sibling. Ancestors can compensate a difference
-    /// of one from `height_before`.
+    /// Exchanges a child with a child of its sibling if that shrinks the sibling. The new height may differ from
+    /// `height_before` by at most one, which the ancestors can compensate.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);

@@ -6,7 +6,7 @@ use super::{NONE, Node, Tree};
 use crate::body::CollisionClass;
 use crate::collision::contact::Pair;
 
-/// Pairs that are buffered.
+/// Number of found pairs that are buffered.
 const FOUND_MAX: usize = 256;
 
 /// List with a branch-free push: overlaps are nearly random, and a mispredicted branch costs more than an unnecessary

@@ -10,11 +10,12 @@ use crate::math::Aabb;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rebuilt {
     cost: u64,
-    /// Old nodes, which each rebuild swaps with the new ones.
+    /// Nodes before the last rebuild. A rebuild swaps this list with the tree's, reads the old nodes and writes the new
+    /// tree.
     nodes: Vec<Node>,
     loose: Vec<Loose>,
     waiting: Vec<Part>,
-    /// Parents before their children.
+    /// Indices of nodes, parents before their children.
     below: Vec<u32>,
 }
 
@@ -68,7 +69,7 @@ impl Tree {
         self.strays = 0;
     }
 
-    /// Returns the cost of the tree.
+    /// Refits all nodes. Returns the cost of the tree.
     fn refit_all(&mut self) -> u64 {
         if self.relinked == 0 {
             let count = u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes");
@@ -90,7 +91,7 @@ impl Tree {
         cost
     }
 
-    /// Takes children before their parents, and returns the cost of the inner nodes.
+    /// Refits nodes, which must be listed with children before their parents. Returns the cost of the inner nodes.
     fn refit_each(&mut self, nodes: impl Iterator<Item = u32>) -> u64 {
         let mut cost = 0_u64;
         for index in nodes {
@@ -117,7 +118,7 @@ impl Tree {
         self.rebuilt = rebuilt;
     }
 
-    /// Boxes and heights of inner nodes are placeholders until the next refit.
+    /// Builds the nodes from the loose leaves. Boxes and heights of inner nodes are placeholders until the next refit.
     fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
         waiting.clear();
         waiting.push(Part { start: 0, end: loose.len(), parent: NONE });

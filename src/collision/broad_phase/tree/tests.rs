@@ -173,7 +173,7 @@ fn orders_that_could_make_a_chain_do_not() {
     }
 }
 
-/// In random order. The smallest possible height is 14.
+/// The boxes are inserted in random order. The smallest possible height is 14.
 #[test]
 fn ordinary_boxes_make_a_low_tree() {
     let mut rng = Rng::new(2);

@@ -33,7 +33,7 @@ struct Corners<T> {
     v: [Vector<T>; 2],
 }
 
-/// The edge of a box with index `second + 2 opposite`.
+/// An edge of a box. Its index is `second + 2 opposite`.
 #[derive(Clone, Copy)]
 struct Choice<M> {
     second: M,
@@ -65,7 +65,7 @@ struct Reference<T> {
     margin: T,
 }
 
-/// Anchor, separation and feature. `gone` if the point is beyond the margin.
+/// Anchor, separation and feature of a contact point. `gone` means that the point is beyond the margin.
 struct Point<T, M> {
     gone: M,
     numbers: [T; 4],
@@ -284,7 +284,7 @@ fn index<L: Lanes<WIDTH>>(Choice { second, opposite }: Choice<L::Mask>) -> L::In
     L::sub(L::sub(L::sub(L::splat(0), second), opposite), opposite)
 }
 
-/// `place` is relative to the start of the reference edge.
+/// Clip point at `place`, a vector from the start of the reference edge.
 #[inline(always)]
 fn end<L: Lanes<WIDTH>>(n: Vector<L::Int>, place: Vector<L::Int>) -> ClipPoint<L::Int> {
     ClipPoint { along: along::<L>(n, place), above: L::narrow::<TO_STEP>(dot::<L>(n, place)) }
@@ -314,8 +314,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height of an end after clipping by a positive `past`, which is measured along the reference edge, like the extent
-/// `span` of the incident edge.
+/// Height of an end of the incident edge after clipping by `past`, which is positive. `past` and `span`, the extent of
+/// the incident edge, are measured along the reference edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,

@@ -27,7 +27,7 @@ struct ClipPoint {
     above: i64,
 }
 
-/// Anchors are relative to the centre of `a`.
+/// Clips the incident edge of `b` against a face of `a`. Anchors are relative to the centre of `a`.
 pub(in crate::collision) fn clip(
     a: &Hull,
     b: &Hull,
@@ -52,8 +52,8 @@ pub(in crate::collision) fn clip(
     let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
     let mut incident = incident_edge(b, normal);
     let (mut upper, mut lower) = edge_of_b(incident);
-    // On an outline with small bends the edge most opposed to the face may lie beside the face, with a neighbour in
-    // front of it. For separate outlines the nearest corner is an end of the most opposed edge.
+    // On an outline with small bends, the edge most opposed to the face may lie beside the face while a neighbour of
+    // that edge is in front of the face. For separate outlines the nearest corner is an end of the most opposed edge.
     let neighbours = if apart { 0 } else { b.faces() };
     for _ in 0..neighbours {
         let neighbour = if upper.along < first.along {
@@ -148,7 +148,7 @@ fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
     i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())
 }
 
-/// In units of `Length`, with one bit more than a `Length`.
+/// `to - from` in units of `Length`. The result may need one bit more than a `Length` has.
 #[inline]
 fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
     let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
@@ -204,7 +204,7 @@ impl Gap {
 }
 
 impl Clip<'_> {
-    /// Each end has the vertex of A that it is paired with.
+    /// Contact points at ends of B's edge. Each end is given with the vertex of A that it is paired with.
     #[inline(always)]
     fn face<const N: usize>(&self, ends: [(usize, ClipPoint); N]) -> Manifold {
         let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));

@@ -1,4 +1,4 @@
-//! Tests by separations at many moments of the tick.
+//! Compares times of impact with the separations at many moments of the tick.
 
 use super::*;
 use crate::collision::shape::support::samples;
