@@ -89,8 +89,9 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Slack of the decoder's limit in bytes: the size of a `u128`. A string that exceeds the remaining bytes by at most
-/// this is reported as missing bytes, otherwise as too long.
+/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. A string that needs more than
+/// the remaining bytes is reported as missing bytes if it exceeds them by at most this number, and as too long
+/// otherwise.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
@@ -104,8 +105,9 @@ const SLACK: usize = 16;
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
-    // bincode allocates the announced length of a string, up to a constant limit, before it checks the bytes. Claiming
-    // the part of the limit that these bytes do not need lowers it to their number plus the slack.
+    // bincode allocates the announced length of a string, up to a constant limit, before it checks whether the string
+    // is there. Claiming the unused part of the limit in advance lowers the limit to the number of bytes plus the
+    // slack.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
     let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));
@@ -169,7 +171,7 @@ mod tests {
         }
     }
 
-    /// A length beyond the slack is rejected for its size.
+    /// A string that exceeds the bytes by more than the slack is rejected for its size.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {

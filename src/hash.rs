@@ -50,8 +50,8 @@ impl StateHash {
         self.0.to_le_bytes()
     }
 
-    /// Deliberately wrong for the canary `tests/cross/run broken`: depends on byte order and on the width of `usize`,
-    /// without effect on x86-64.
+    /// Deliberately wrong, for the canary `tests/cross/run broken`: these bytes depend on byte order and on the width
+    /// of `usize`. On x86-64 they are right.
     #[cfg(lockstep2d_broken)]
     #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
     fn bytes(self) -> alloc::vec::Vec<u8> {
@@ -88,7 +88,7 @@ mod tests {
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");
         let bytes: Vec<u8> = (0..4096).map(byte).collect();
-        // The lengths are around the limits of the algorithm, and end at many positions in a stripe and a block.
+        // The lengths include those at which the algorithm changes, and many positions in a stripe and in a block.
         let lengths = (0..600).chain((600..4096).step_by(61));
         let all = StateHash::of_digests(lengths.map(|length| StateHash::of_bytes(&bytes[..length])));
         assert_eq!(all, StateHash(0x895a_7f64_9a6f_6e88_c604_0708_9b0a_5435));

@@ -7,9 +7,10 @@
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
-//! - [`peer`]: a participant of a match of any game. [`session`]: its protocol, without I/O.
+//! - [`peer`]: a participant of a match of any game. [`session`]: the protocol between peers, without I/O.
 //! - [`replay`]: writes, reads and verifies replay files.
-//! - [`report`]: files that peers write when states differ. Their comparison shows which peer diverged, when and where.
+//! - [`report`]: files that peers write when their states differ. Comparing these files shows which peer diverged, when
+//!   and where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
 //! - [`inspect`]: converts any value to named fields, and compares two values.
 //! - [`draw`]: renders a world.
@@ -54,7 +55,7 @@ mod threads;
 pub mod world;
 
 /// Version of the engine's arithmetic, increased when the same inputs may give another state. Snapshots of another
-/// version are rejected, and replays cannot be played.
+/// version are rejected, and replays of another version cannot be played.
 pub const SEMANTICS: u32 = 19;
 
 /// Version of this crate.

@@ -31,7 +31,7 @@ pub(crate) enum EnvelopeError {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opened<'a> {
     bytes: &'a [u8],
-    /// The semantics of the engine that wrote the file.
+    /// [`crate::SEMANTICS`] of the engine that wrote the file.
     pub(crate) semantics: u32,
     length: u64,
 }

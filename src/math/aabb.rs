@@ -41,7 +41,7 @@ impl Aabb {
         points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
     }
 
-    /// Whether the lower corner is at most the upper corner on both axes, as other methods require.
+    /// Whether the lower corner is at most the upper corner on both axes. Other methods require this.
     #[inline]
     #[must_use]
     pub fn is_valid(self) -> bool {
@@ -151,7 +151,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! Boxes are compared with the points of a small grid in them.
+    //! Relations between boxes are compared with those between their points on a small grid.
 
     use super::*;
     use crate::fx;

@@ -70,14 +70,14 @@ impl Angle {
         super::formats::fx_mul(Fx::from_bits(turns), TAU)
     }
 
-    /// Angle from turns: exact, without whole turns.
+    /// Angle from turns: exact. Whole turns are dropped.
     #[inline]
     #[must_use]
     pub const fn from_turns(turns: Fx) -> Self {
         Angle(low_bits(turns.to_bits()))
     }
 
-    /// Angle from radians: rounded to nearest, without whole turns.
+    /// Angle from radians, rounded to nearest. Whole turns are dropped.
     #[inline]
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a 127-bit product shifted by 66")]
@@ -87,7 +87,7 @@ impl Angle {
         Angle(low_bits(round_shift_wide(radians.to_bits() as i128 * TURNS, 66) as i64))
     }
 
-    /// Angle from degrees: rounded to nearest (halves away from zero), without whole turns.
+    /// Angle from degrees, rounded to nearest (halves away from zero). Whole turns are dropped.
     #[inline]
     #[must_use]
     pub const fn from_degrees(degrees: Fx) -> Self {
@@ -167,7 +167,7 @@ impl Angle {
         Angle(arc_tangent(vector.x.to_bits(), vector.y.to_bits()))
     }
 
-    /// In units of 2^-32 turn, above minus and up to plus one half turn.
+    /// The angle in units of 2^-32 turn, above minus one half turn and up to plus one half turn.
     const fn signed(self) -> i64 {
         let bits = signed(self.0) as i64;
         if self.0 == Self::HALF.0 { -bits } else { bits }

@@ -31,7 +31,7 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Dropping all but one bit first cannot overflow unless the shift is 1.
+    // All but one of the bits are dropped before the addition, which can then overflow only for a shift of 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
@@ -153,11 +153,11 @@ pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
     Fx::from_bits(round_product(a.to_bits() as i128 * b.to_bits() as i128))
 }
 
-/// Converts a sum of products, rounded to nearest, saturated.
+/// Converts a sum of products of [`Fx`] to the format of `Fx`, rounded to nearest, saturated.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the truncated bits are compared")]
 pub(super) const fn round_product(x: i128) -> i64 {
-    // In units of half the resolution. It nearly always fits 64 bits, where rounding is fast.
+    // The sum in units of half the resolution. It nearly always fits 64 bits, where rounding is fast.
     let halves = x >> 31;
     let low = halves as i64;
     if low as i128 == halves { (low >> 1) + (low & 1) } else { saturate_wide(round_shift_wide(x, 32)) }
@@ -173,7 +173,7 @@ pub const fn fx_div(a: Fx, b: Fx) -> Option<Fx> {
     Some(Fx::from_bits(saturate_wide(div_round((a.to_bits() as i128) << 32, b.to_bits() as i128))))
 }
 
-/// `numerator / denominator`, rounded to nearest. The denominator must not be 0.
+/// `numerator / denominator`, rounded to nearest, saturated. The denominator must not be 0.
 #[inline]
 #[must_use]
 pub const fn ratio(numerator: i64, denominator: i64) -> Fx {

@@ -105,7 +105,7 @@ pub fn segment_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<F
     point_at(b0, b, between.cross(a), determinant).map(|_| on_a)
 }
 
-/// For segments that are parallel or of zero length.
+/// [`segment_intersection`] of segments that are parallel or of zero length.
 fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) -> Option<Vec2<Fx>> {
     if on_segment(a0, b0, b1) {
         return Some(a0);

@@ -77,13 +77,13 @@ impl Mat2<Fx> {
         Vec2::new(self.a11, self.a12).cross(Vec2::new(self.a21, self.a22))
     }
 
-    /// `M^-1`, from the exact determinant, rounded once, saturated; `None` if that is 0.
+    /// `M^-1`, from the exact determinant, rounded once, saturated; `None` if the determinant is 0.
     #[must_use]
     pub const fn inverse(self) -> Option<Self> {
         let Mat2 { a11, a12, a21, a22 } = self;
         let plus = a11.to_bits() as i128 * a22.to_bits() as i128;
         let minus = a12.to_bits() as i128 * a21.to_bits() as i128;
-        // In units of 2^-64. Its magnitude is at most 2^127 - 2^63, so that it fits.
+        // The determinant in units of 2^-64. Its magnitude is at most 2^127 - 2^63, so that it fits an `i128`.
         let determinant = plus.saturating_sub(minus);
         if determinant == 0 {
             return None;

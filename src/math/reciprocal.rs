@@ -114,7 +114,7 @@ mod tests {
             for bits in [(1i64 << exponent) - 1, 1 << exponent, (1 << exponent) + 1] {
                 let Reciprocal { mantissa, shift } = Reciprocal::of(Fx::from_bits(bits));
                 assert!(mantissa >= 1 << 30, "{bits}");
-                // 2^(shift+32) with a relative error of at most 2^-30.
+                // The product is 2^(shift+32) with a relative error of at most 2^-30.
                 let product = i128::from(mantissa) * i128::from(bits);
                 let error = (product - (1i128 << (shift + 32))).abs();
                 assert!(error <= product >> 30, "{bits}: {error}");

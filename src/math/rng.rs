@@ -5,7 +5,7 @@
 //! has 16 bytes, half that of xoshiro256**, and the period is 2^64. Not cryptographically secure.
 //!
 //! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019). They may take
-//! several draws, which depend only on the state and the bound.
+//! several draws, the number of which depends only on the state and the bound.
 
 use serde::{Deserialize, Serialize};
 
@@ -120,7 +120,8 @@ impl Rng {
         }
     }
 
-    /// Bit 0 is set, because an even deserialized increment would shorten the period.
+    /// Advances the state. Bit 0 of the increment is set here, because a deserialized increment may be even, which
+    /// would shorten the period.
     #[inline]
     const fn step(&mut self) {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment | 1);
@@ -150,7 +151,8 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects a quarter of the draws, without which every third number would be twice as likely.
+        // The first bound rejects a quarter of the draws. Without these rejections, every third number would be twice
+        // as likely.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];
             for _ in 0..60_000 {
@@ -205,7 +207,7 @@ mod tests {
         );
     }
 
-    /// From a second implementation in Python. Changing these numbers breaks replays.
+    /// The expected numbers are those of a second implementation in Python. Changing these numbers breaks replays.
     #[test]
     fn golden() {
         let mut rng = Rng::new(5);

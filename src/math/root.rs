@@ -79,7 +79,7 @@ impl Vec2<Fx> {
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
-        // The bits are the same, because all shifts are exact.
+        // Both paths give the same bits, because all shifts are exact.
         if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
             return match polar(x, y) {
                 Some((direction, _)) => Some(direction),
@@ -157,7 +157,8 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // m / sqrt(m) for m = n 2^shift. Errors of 0.51 and one half leave the nearest root at most one away.
+    // The root of m = n 2^shift is m / sqrt(m). The errors of the inverse (0.51) and of rounding (one half) leave it at
+    // most one away from the nearest root.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
@@ -174,7 +175,7 @@ const fn narrowed(x: i64) -> Option<i32> {
     if low as i64 == x { Some(low) } else { None }
 }
 
-/// From a magnitude in units of 2^-63, which may exceed 1 by far less than the rounding.
+/// Converts a magnitude in units of 2^-63. It may exceed 1 by a rounding error, which this conversion rounds away.
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
     let rounded = ((magnitude + (1 << 32)) >> 33) as i32;
@@ -192,14 +193,15 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
     reason = "the residual is taken modulo 2^64, the sum is positive"
 )]
 const fn inverse_root(n: u64) -> u64 {
-    /// Minimax by Remez exchange, weighted by relative error, in units of 2^-30.
+    /// Coefficients of the parabola in units of 2^-30: minimax by Remez exchange, weighted by relative error.
     const START: [u64; 3] = [2_867_787_663, 3_527_624_814, 1_759_398_854];
     let m = n >> 32; // units of 2^-32
     let mut y = START[0] - ((m * (START[1] - ((m * START[2]) >> 32))) >> 32); // units of 2^-30
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The residual `1 - m y^2` is small and therefore exact modulo 2^64, where the term 1, 2^76, is 0.
+    // The residual `1 - m y^2` is small and therefore exact modulo 2^64. Its term 1 is 2^76 units, which is 0 modulo
+    // 2^64.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31
@@ -223,7 +225,7 @@ const fn sum_of_squares_wide(x: u64, y: u64) -> u128 {
 #[inline]
 const fn sqrt_rounded(n: u64) -> u64 {
     let root = n.isqrt();
-    // Exactly if n exceeds (root + 1/2)^2 = root^2 + root + 1/4.
+    // Rounds up exactly if n exceeds (root + 1/2)^2 = root^2 + root + 1/4.
     if n - root * root > root { root + 1 } else { root }
 }
 

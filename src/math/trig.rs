@@ -28,8 +28,8 @@ pub(super) const fn sine(angle: u32) -> i32 {
 /// Sine of `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
-    /// In units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48, with which each product fits 64 bits. All but the last
-    /// contain one half, so that dropping bits rounds to nearest.
+    /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48, with which each product fits 64 bits. All
+    /// but the last include half a unit, so that dropping bits rounds to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -60,7 +60,7 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     if long == 0 {
         return 0;
     }
-    // The top bit of `long` is moved to bit 62, so that the sum of both fits.
+    // The top bit of `long` is moved to bit 62, so that `long + short` fits.
     let spare = long.leading_zeros();
     let (short, long) =
         if spare == 0 { (short >> 1, long >> 1) } else { (short << (spare - 1), long << (spare - 1)) };
@@ -117,7 +117,7 @@ mod tests {
         (sin, cos)
     }
 
-    /// A constant stride over the turn, and all angles near each multiple of an eighth of a turn.
+    /// Angles at a constant stride over the turn, and all angles near each multiple of an eighth of a turn.
     fn angles() -> impl Iterator<Item = u32> {
         let all = (0..60_000_u32).map(|i| i.wrapping_mul(71_583));
         let borders = (0..8_u32)
@@ -164,7 +164,7 @@ mod tests {
         }
     }
 
-    /// In thousandths of 2^-32 turn.
+    /// Error of [`arc_tangent`] in thousandths of 2^-32 turn.
     fn arc_tangent_error(x: i64, y: i64) -> i128 {
         let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
         // Scaled up, so that the length has at least 62 bits.

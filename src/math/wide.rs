@@ -1,7 +1,8 @@
 //! Exact wide integers for geometric predicates.
 //!
-//! The difference of two coordinates has 65 bits, a cross product of differences 130, and a point along a segment needs
-//! the product of both. With separate signs, a difference fits a `u64` and a product of two a `u128`.
+//! The difference of two coordinates has 65 bits, and a cross product of differences 130. A point along a segment needs
+//! the product of a difference and a cross product. With separate signs, a difference fits a `u64`, and a product of
+//! two differences fits a `u128`.
 
 use core::cmp::Ordering;
 

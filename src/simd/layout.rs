@@ -2,8 +2,8 @@
 
 use super::{Machine, Vectors};
 
-/// Data that kernels process in [`WIDTH`](super::WIDTH) lanes with vectors, and in one lane without. Arrays of plain
-/// integers would be slower than single integers, and would compile to several times as much code.
+/// Data that kernels process in [`WIDTH`](super::WIDTH) lanes with vectors, and in one lane without vectors. Without
+/// vectors, arrays of integers would be slower than single integers, and would compile to several times as much code.
 #[derive(Clone, Debug)]
 pub(crate) enum Layout<W, S> {
     Wide(W, Vectors),

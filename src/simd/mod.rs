@@ -59,7 +59,7 @@ pub(crate) struct VelocityW<T> {
     pub(crate) turn: T,
 }
 
-/// `N` lanes of 32-bit integers. Sums wrap, except those named `saturating`.
+/// `N` lanes of 32-bit integers. Sums wrap, except in functions named `saturating`.
 pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
     /// 64-bit products.
@@ -102,7 +102,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     /// overflow 64 bits. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    /// [`Lanes::narrow_saturating`] with a shift per lane, 1 to 61. The magnitude of `a` is at most 2^62.
+    /// [`Lanes::narrow_saturating`] with a shift per lane, 1 to 61, and without the mask. The magnitude of `a` is at
+    /// most 2^62.
     fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
 
     /// The lowest 32 bits, as a signed number.
@@ -160,6 +161,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
 
 /// A computation that is generic over the lanes.
 pub(crate) trait Kernel<const N: usize> {
+    /// Implementations must be `#[inline(always)]`, so that they are compiled with the target features of the backend.
     fn run<L: Lanes<N>>(self);
 }
 
@@ -189,7 +191,7 @@ impl Machine {
         }
     }
 
-    /// Runs a kernel of [`WIDTH`] lanes, without vectors on arrays of plain integers.
+    /// Runs a kernel of [`WIDTH`] lanes: with vectors, or on arrays of plain integers if the backend has no vectors.
     #[cfg(test)]
     pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
         match self.vectors() {

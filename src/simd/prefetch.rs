@@ -18,7 +18,7 @@ pub(crate) fn prefetch<T>(of: &T) {
         ask(offset);
         offset += LINE;
     }
-    // A value that is not aligned to a line may extend into one more.
+    // A value that is not aligned to a line may extend into one more line.
     if align_of::<T>() < LINE.min(size_of::<T>()) {
         ask(size_of::<T>() - 1);
     }

@@ -30,7 +30,7 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
 
 /// An operation of the solver on one batch.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
-    /// Must be `#[inline(always)]`: see [`Kernel::run`].
+    /// Implementations must be `#[inline(always)]`, like [`Kernel::run`].
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, K, N>);
 }
 

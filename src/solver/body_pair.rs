@@ -22,8 +22,8 @@ impl Change {
     const EXTRA: u32 = 30;
 }
 
-/// The part of a joint's changes of a body that is not yet in its velocity, in units of 2^-51 m/s: at most half a unit
-/// of [`Speed`].
+/// The part of a joint's velocity changes that the velocity of a body does not contain yet, in units of 2^-51 m/s: at
+/// most half a unit of [`Speed`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Remainder {
     x: i32,
@@ -40,8 +40,8 @@ pub(crate) struct Remainders {
 
 impl Remainders {
     /// Remainders at the start of a tick: arbitrary numbers, so that the rounding at the end of a tick differs from
-    /// tick to tick in a steady rotation (dither). They follow from the poses, so that they do not change while the
-    /// bodies are at rest.
+    /// tick to tick in a steady rotation (dither). The numbers depend only on the poses, so that they do not change
+    /// while the bodies are at rest.
     pub(crate) fn starting([a, b]: [&Body; 2]) -> Self {
         Remainders { a: Remainder::starting(a), b: Remainder::starting(b) }
     }
@@ -84,7 +84,7 @@ impl Remainder {
     }
 }
 
-/// The speed after a change and the last remainder, saturated. Stores the new remainder.
+/// The sum of a speed, a change and the last remainder, rounded and saturated. Stores the new remainder.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the remainder is at most half a unit, 2^29")]
 fn rounded_sum(speed: Speed, change: i64, remainder: &mut i32) -> Speed {

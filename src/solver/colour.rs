@@ -102,7 +102,8 @@ impl<'a> Group<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
     nodes: Vec<Node>,
-    /// The constraints of the current order. In a world at rest they seldom change.
+    /// The constraints for which `order` was computed. In a world at rest the constraints seldom change, and the order
+    /// is kept.
     ordered: Vec<Node>,
     /// For each body, a bit set of the colours of its constraints.
     used: Vec<u32>,
@@ -121,7 +122,7 @@ impl Colouring {
         self.nodes.clear();
     }
 
-    /// Adds a constraint. Its index is the number of earlier ones.
+    /// Adds a constraint. Its index is the number of constraints added before.
     #[inline]
     pub(super) fn add(&mut self, node: Node) {
         self.nodes.push(node);
@@ -181,7 +182,7 @@ impl Colouring {
         &self.order
     }
 
-    /// The constraints that fit no colour, either the cold ones or the others.
+    /// The constraints that fit no colour: the cold ones, or the others if `cold` is false.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
         let place = if cold { PLACES } else { 0 };
         &self.order[self.start(place, 0)..self.end(place, 0)]
@@ -199,7 +200,7 @@ impl Colouring {
         })
     }
 
-    /// Index in `order` of the first constraint with a place that belongs to the thread `part`.
+    /// Index in `order` of the first constraint that has this place and belongs to the thread `part`.
     fn start(&self, place: u8, part: usize) -> usize {
         let rank = self.ranks.rank_of(place, part);
         rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
@@ -225,8 +226,8 @@ impl Ranks {
     }
 
     /// The thread that solves a constraint. The bodies are divided evenly among the threads, by index, and the thread
-    /// of one body solves the constraint. If the first body always decided, the first thread would get most constraints
-    /// of a mixed heap.
+    /// of one of the two bodies solves the constraint. If the first body always decided, the first thread would get
+    /// most constraints of a mixed heap.
     fn part_of(self, node: &Node) -> usize {
         let body = match node.bodies {
             [GROUND, body] | [body, GROUND] => body,

@@ -29,7 +29,7 @@ pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
     /// Whether the tick has had a sub-step to measure.
     known: bool,
-    /// Whether any group of any thread is shared.
+    /// Whether any group of any thread is shared ([`PushedBody::shared`]).
     pub(super) shared: bool,
 }
 
@@ -74,7 +74,7 @@ impl ContactVelocities {
         self.shared = with_data!(&mut self.groups, groups => arrange(groups, bodies));
     }
 
-    /// Measures the velocity changes of the last sub-step, unless this is the first one of the tick.
+    /// Measures the velocity changes of the last sub-step, unless this is the first sub-step of the tick.
     pub(super) fn measure(&mut self, context: &StepContext<'_>) {
         if self.known {
             self.perform(Task::Measure, context);
@@ -82,7 +82,7 @@ impl ContactVelocities {
     }
 
     /// Records the free velocities and applies the velocity changes of the last sub-step. Returns `false` in the first
-    /// sub-step of a tick, which has none.
+    /// sub-step of a tick, in which there are no such changes yet.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
         self.perform(Task::Apply, context);
         core::mem::replace(&mut self.known, true)
@@ -122,7 +122,7 @@ impl<const N: usize> Group<N> {
     const STILL: VelocityW<Ints<N>> = VelocityW { x: Ints::ZERO, y: Ints::ZERO, turn: Ints::ZERO };
 }
 
-/// Arranges bodies in groups. Returns whether any is shared.
+/// Arranges bodies in groups. Returns whether any body is shared.
 fn arrange<const N: usize>(groups: &mut Groups<N>, bodies: impl Iterator<Item = PushedBody>) -> bool {
     groups.clear();
     let mut shared = false;

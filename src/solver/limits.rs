@@ -7,8 +7,8 @@ use crate::math::Speed;
 /// Number of results that a clamp has changed. The state of the world contains the sum over all ticks.
 pub(crate) type Faults = u64;
 
-/// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. That of a point is
-/// clamped.
+/// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. A larger impulse of
+/// a point is clamped.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");

@@ -66,7 +66,7 @@ pub(crate) struct Solver {
     list: BodyList,
     moving: Vec<MovingBody>,
     joints: JointSet,
-    /// For the reaction of a single joint.
+    /// Working memory for the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
     /// For each thread, the velocity changes by contacts of the bodies that the thread integrates.
@@ -91,7 +91,7 @@ impl Solver {
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
         self.moving.clear();
-        // Bodies are large, so that each is read once.
+        // Bodies are large, so each is read only once.
         for &slot in slots {
             let body = bodies.at(slot);
             self.list.add(slot, body);

@@ -131,7 +131,7 @@ impl PointBlock {
         PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
     }
 
-    /// The block of bodies that impulses move only along `n`, the line through both centres: `G = n n^T`.
+    /// The block whose impulses act only along `n`, the direction of the line through both centres: `G = n n^T`.
     pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
         let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
         PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }

@@ -50,8 +50,8 @@ impl MassFractions {
         Self::of_masses(mass(a), mass(b))
     }
 
-    /// The fractions for masses in kg: 0 for a body that no impulse moves. `mA / (mA + mB)` of inverse masses is
-    /// `MB / (MA + MB)` of masses.
+    /// The fractions for masses in kg. The mass is 0 for a body that no impulse moves. `mA / (mA + mB)` of inverse
+    /// masses is `MB / (MA + MB)` of masses.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
             (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },

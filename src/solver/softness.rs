@@ -43,8 +43,8 @@ impl Softness {
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
-    /// The softness of a spring with this stiffness and damping in a row with the denominator `D` (30 fraction bits),
-    /// which also turns bodies. `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale + massScale D)`.
+    /// The softness of a spring with this stiffness and damping in a row that also turns bodies and has the denominator
+    /// `D` (30 fraction bits). `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale + massScale D)`.
     pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
         let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
         let mass = mass * i128::from(denominator);
@@ -69,7 +69,7 @@ impl Softness {
     }
 
     /// The negated part of a spring's impulse that comes from its stretch: `massScale biasRate x`, about `h omega^2 x`.
-    /// The product of the bias rate and a long stretch does not fit a [`Speed`].
+    /// The product is rounded to a [`Speed`] at the end, because the bias rate times a long stretch does not fit one.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }

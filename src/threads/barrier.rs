@@ -11,7 +11,7 @@ const SPINS: u32 = 100;
 #[derive(Debug)]
 pub(super) struct Barrier {
     count: usize,
-    /// Number of members that have arrived since all last arrived.
+    /// Number of members that have arrived at the current wait.
     arrived: AtomicUsize,
     generation: AtomicUsize,
     /// Whether a member has panicked, so that it will not arrive.
@@ -53,7 +53,8 @@ impl Barrier {
     }
 }
 
-/// Breaks the barrier when it is dropped, by a panic. A member that finishes its work forgets its guard.
+/// Breaks the barrier when it is dropped, as in a panic. A member that finishes its work forgets its guard, which then
+/// is not dropped.
 pub(super) struct Guard<'a>(pub(super) &'a Barrier);
 
 impl Drop for Guard<'_> {

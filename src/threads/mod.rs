@@ -71,7 +71,7 @@ impl Member<'_> {
         true
     }
 
-    /// Waits until all members of the team have called this method as often.
+    /// Waits until every other member of the team has called this method as often as this member.
     pub(crate) fn wait(self) {
         #[cfg(feature = "parallel")]
         if let Some(barrier) = self.barrier {

@@ -23,8 +23,8 @@ pub(super) enum Mode {
 /// become rare if they keep being slower, because each may take long.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
-    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean, or the time of the last trial.
-    /// `None` before the first tick in the mode.
+    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean for the faster mode, and the time
+    /// of the last trial for the other one. `None` before the first tick in the mode.
     costs: [Option<u64>; 2],
     faster: Mode,
     until_trial: u32,

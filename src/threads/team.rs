@@ -20,8 +20,9 @@ const RETURN_SPINS: u32 = 100;
 pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
-    /// Held during a tick, because worlds that are clones of each other share a team. If two worlds used it at once,
-    /// each could wait for a thread that waits at the barrier of the other. Contains `None` for [`Sharing::Always`].
+    /// Held during a tick, because worlds that are clones of each other share a team. If two worlds used the team at
+    /// once, each could wait for a thread that waits at the barrier of the other world. Contains `None` for
+    /// [`Sharing::Always`].
     turn: Mutex<Option<Pace>>,
 }
 
@@ -81,7 +82,8 @@ impl Team {
         result
     }
 
-    /// Runs a tick with all threads. They stay awake between its stages, because waking a thread takes 50 microseconds.
+    /// Runs a tick with all threads. The threads stay awake between the stages, because waking a thread takes 50
+    /// microseconds.
     fn share_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         let is_over = &AtomicBool::new(false);
         self.pool.in_place_scope(|scope| {

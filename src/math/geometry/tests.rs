@@ -1,5 +1,5 @@
-//! Predicates against integer and rational arithmetic on a small grid, where touching, crossing at corners and
-//! overlapping are common, scaled up to the edge of the number range.
+//! Predicates are compared with integer and rational arithmetic on a small grid, on which segments often touch, overlap
+//! or cross at corners. The grid is scaled up to the edge of the number range.
 
 use super::*;
 use crate::fx;
@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 /// Coordinates from -6 to 6.
 type Grid = (i128, i128);
 
-/// `grid * scale + offset`, in units of 2^-32 m.
+/// Scale and offset: a grid coordinate is placed at `coordinate * scale + offset`, in units of 2^-32 m.
 const PLACES: [(i128, i128); 5] =
     [(1, 0), (3, i64::MIN as i128 + 18), (1 << 33, 7), ((1 << 60) + 1, 5), ((1 << 60) - 77, 1 << 60)];
 
@@ -19,7 +19,7 @@ fn place((x, y): Grid, (scale, offset): (i128, i128)) -> Vec2<Fx> {
     Vec2::new(bits(x), bits(y))
 }
 
-/// At the fraction `n / d` of the way, rounded to nearest, ties up.
+/// The point at the fraction `n / d` of the way, rounded to nearest, ties up.
 fn point_between(from: Grid, to: Grid, n: i128, d: i128, placed: (i128, i128)) -> Vec2<Fx> {
     let (n, d) = (n * d.signum(), d.abs());
     let part = |from: i128, to: i128| {
@@ -60,7 +60,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
     assert_eq!(orientation(low, high, Vec2::new(Fx::ZERO, Fx::ZERO)), Orientation::Collinear);
 }
 
-/// As a fraction along the first segment.
+/// The first shared point of two segments, as a fraction along the first segment.
 fn shared(a0: Grid, a1: Grid, b0: Grid, b1: Grid) -> Option<(i128, i128)> {
     let (a, b) = ((a1.0 - a0.0, a1.1 - a0.1), (b1.0 - b0.0, b1.1 - b0.1));
     let determinant = a.0 * b.1 - a.1 * b.0;
@@ -89,7 +89,7 @@ fn segments_meet_where_rational_arithmetic_says() {
     let mut rng = Rng::new(2);
     let (mut hits, mut parallel) = (0, 0);
     for round in 0..20_000 {
-        // On the smaller grid of every other figure, segments often touch at their ends or overlap.
+        // Every other round uses a smaller grid, on which segments often touch at their ends or overlap.
         let part = |v: i128| if round % 2 == 0 { v } else { v / 3 };
         let [a0, a1, b0, b1] = [(); 4].map(|()| draw(&mut rng)).map(|(x, y)| (part(x), part(y)));
         let at = PLACES[round % PLACES.len()];
@@ -172,7 +172,7 @@ fn a_star_is_the_union_of_its_triangles() {
 
 #[test]
 fn combs_and_their_teeth() {
-    // The teeth point up, so that a ray to the right passes corners that turn back, and runs along edges.
+    // The teeth point up, so that a ray to the right touches corners without crossing the border, and runs along edges.
     let comb = [(0, 0), (6, 0), (6, 3), (5, 1), (4, 3), (3, 3), (2, 1), (1, 3), (0, 1)];
     let picture = [
         // x = -1 to 7, from y = 4 down to -1

@@ -75,7 +75,7 @@ fn slow_component(part: u64, sum: u128) -> u128 {
     quotient.isqrt()
 }
 
-/// In thousandths of 2^-30.
+/// The larger error of both components, in thousandths of 2^-30.
 fn unit_error(x: i64, y: i64, unit: Vec2<Unit>) -> u128 {
     let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
     let error = |part: i64, result: Unit| {

@@ -1,4 +1,5 @@
-//! AVX2 backend: eight lanes in a vector of 256 bits. Their products are a vector of the even and one of the odd lanes.
+//! AVX2 backend: eight lanes in a vector of 256 bits. Their products take two vectors: one for the even lanes, and one
+//! for the odd lanes.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx2/rows.rs"]

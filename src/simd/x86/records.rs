@@ -46,8 +46,8 @@ impl<'a, T> Records<'a, T> {
         unsafe { self.all.get_unchecked(at.read_volatile() as usize) }
     }
 
-    /// Calls `each` with every body except the ground. Most batches do not contain the ground, so that no lane needs a
-    /// check.
+    /// Calls `each` with every body except the ground. Most batches do not contain the ground. In these batches, no
+    /// lane is checked.
     #[inline(always)]
     pub(super) fn each_but_the_ground(&self, mut each: impl FnMut(usize, &'a T)) {
         let has_ground = self.has_ground();

@@ -22,16 +22,16 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// one, without an impulse.
     pub(super) both: Ints<N>,
     pub(super) points: [Point<N>; 2],
-    /// The friction row, half-way between the points. Both points have about the same row, because they lie on one line
-    /// along the tangent.
+    /// The friction row, half-way between the points. One row is enough, because both points lie on one line along the
+    /// tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
     /// Largest number of points of a contact. Points beyond this number are stale.
     pub(super) count: usize,
     /// Whether the batch has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
-    /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]). Iterations
-    /// also do, if [`super::Constants::unchecked`] holds.
+    /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]). Iterations do
+    /// so as well, if [`super::Constants::unchecked`] holds.
     pub(super) unchecked: bool,
     /// For each point, the lanes in which it has pushed in this tick, as a bit mask.
     pub(super) pushed: [u32; 2],
@@ -117,7 +117,7 @@ impl<const N: usize> Batch<N> {
         }
     }
 
-    /// Sets the normal impulse of a point, and records where it pushes.
+    /// Sets the normal impulse of a point, and records the lanes in which the point pushes.
     #[inline(always)]
     pub(super) fn push<L: Lanes<N>>(&mut self, place: usize, lambda: L::Int) {
         L::store(lambda, &mut self.points[place].normal_lambda);

@@ -15,7 +15,7 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) impacts: Impacts<N>,
     /// For each point, the impulse of restitution in this sub-step.
     pub(super) bounce: [Ints<N>; 2],
-    /// Sum of the surface speeds. Friction drives the tangential velocity to its negative.
+    /// Sum of the surface speeds. Friction drives the tangential velocity to the negative of this sum.
     pub(super) surface_speed: Ints<N>,
     pub(super) rolls: bool,
     pub(super) rolling: RollingRows<N>,

@@ -1,4 +1,5 @@
-//! Impacts of points with restitution: the time of impact within a sub-step, and the rebound until its end.
+//! Impacts of points with restitution: the time of impact within a sub-step, and the rebound until the end of the
+//! sub-step.
 //!
 //! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body is the velocity at the middle of the
 //! sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the
@@ -33,7 +34,7 @@ const NEAR: Shift = Shift::lit("0.005");
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
     /// For each point, the change `a` of its relative normal velocity by forces. Until [`PredictImpacts`] runs in the
-    /// first sub-step of a tick, the relative normal velocity before forces act.
+    /// first sub-step of a tick, this is the relative normal velocity before forces act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that bounces, else `v`. A
     /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time of the first impact.
@@ -48,7 +49,8 @@ pub(super) struct Impacts<const N: usize> {
     /// overlap, -1 only where it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
     pub(super) slide: Ints<N>,
-    /// `f` times the tangential velocity. Friction does not act on this sliding before the impact.
+    /// `f` times the tangential velocity: the part of the sliding that precedes the impact, on which friction does not
+    /// act.
     pub(super) slip: Ints<N>,
 }
 
@@ -88,7 +90,7 @@ pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`, or 0 for a point that does not hit.
     pub(super) rebound: L::Int,
     /// [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse of
-    /// this point. In the next sub-step it approaches and may bounce.
+    /// this point. In the next sub-step the point approaches and may bounce.
     pub(super) late: L::Mask,
 }
 

@@ -94,8 +94,8 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// Adds a node for each touching pair, and collects the prospects of the bodies. Returns whether any contact is
-    /// elastic, and whether any is a hit.
+    /// Adds a node for each touching pair, and collects the prospects of the bodies. In the returned features, only
+    /// `elastic` and `hits` are set.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
         let mut features = Features::default();
         prospects.clear();

@@ -66,8 +66,9 @@ const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if neither of its bodies has an initial guess of its impulses: no contact of the body had points
-/// in the last tick, or an impact may drive the body between two walls. Cold contacts need more iterations.
+/// A contact is cold if neither of its bodies has an initial guess of its impulses. A body has none if no contact of
+/// the body had points in the last tick, or if an impact may drive the body between two walls. Cold contacts need more
+/// iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
@@ -174,11 +175,11 @@ impl BatchKind for Contacts {
 /// Statistics of warm starting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct WarmStarts {
-    /// Points in contact.
+    /// Number of points in contact.
     pub(crate) points: u32,
-    /// Points that already existed in the last tick.
+    /// Number of points that already existed in the last tick.
     pub(crate) kept: u32,
-    /// Points that no longer exist and had an impulse in the last tick, although the shapes still touch.
+    /// Number of points with an impulse in the last tick that no longer exist, although the shapes still touch.
     pub(crate) lost: u32,
 }
 

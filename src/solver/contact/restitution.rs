@@ -1,6 +1,6 @@
-//! Restitution: a point bounces if its approach speed was not below the threshold, and if it is pushed or bounces
-//! together with a point that is pushed. It separates at `e` times the approach speed, or more slowly if `e` is at most
-//! 1 and the contact would gain energy.
+//! Restitution: a point bounces if its approach speed was not below the threshold, and if the point or another point
+//! that bounces together with it is pushed. The point separates at `e` times the approach speed, or more slowly if `e`
+//! is at most 1 and the contact would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + min(e va + drift, 0)), 0)     in the sub-step in which it is pushed, after the passes
@@ -43,7 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities are read in all lanes. A velocity that does not fit in a lane that does not bounce is no fault.
+        // Velocities are also read in lanes that do not bounce. There, a velocity that does not fit is no fault, so
+        // that no faults of reading are counted.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
@@ -118,7 +119,7 @@ impl Operation<Contacts> for ApplyRestitution {
 }
 
 /// The full rebound of a point: its impulses without and with restitution (`old` and `new`), and its relative normal
-/// velocities before and after.
+/// velocities before and after the rebound.
 #[derive(Clone, Copy)]
 struct Rebound<const N: usize> {
     old: Ints<N>,
@@ -142,7 +143,8 @@ impl<const N: usize> Rebound<N> {
 ///
 /// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
 /// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its
-/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities of both.
+/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities without a rebound
+/// and with the full rebound.
 fn share_without_gain<const N: usize>(
     lane: usize,
     batch: &Batch<N>,

@@ -143,7 +143,7 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
-        // The exponent is smaller only for a body that does not turn, whose mantissa is 0.
+        // The difference would be below 1 only for a body that does not turn, whose mantissa is 0.
         let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
         ContactSide { fraction, to_origin, mantissa, shift }
     }
@@ -176,7 +176,7 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     }
 }
 
-/// Computes a row and its denominators, given the points at which its impulses act on A and on B.
+/// Computes a row and its denominator, given the points at which its impulses act on A and on B.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
@@ -230,7 +230,7 @@ impl<L: Lanes<N>, const N: usize> Long<L, N> {
 fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
     let Long { whole, part } = *long;
     // The product with the whole part is exact. Both products have the sign of x, so that the sum saturates if one
-    // does.
+    // product does.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }

@@ -38,8 +38,9 @@ const NORMAL_ROUNDS_MAX: u32 = 4;
 const SETTLED: Speed = Speed::lit("0.005");
 
 /// Normal velocity, in m/s, below which an overlap with a body that no impulse moves is rigid, if the other body has an
-/// impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity comes from
-/// other constraints: a wheel on a fixed axle that overlaps the ground would shake.
+/// impact. A soft contact would remove only a part of the approach velocity. Without an impact, the velocity comes from
+/// other constraints, against which a rigid contact would work: a wheel on a fixed axle that overlaps the ground would
+/// shake.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
 /// Order in which the two points of a contact are solved. The first point turns the body a little. With a fixed order,
@@ -78,7 +79,7 @@ impl<P: SolverPass> Operation<Contacts> for Solve<P> {
                 solved.store(batch, bodies);
                 return;
             }
-            // It is likely to be out of bounds again in this tick.
+            // The batch is likely to be out of bounds again in this tick.
             batch.unchecked = false;
         }
         let saturating = &mut Saturating::<L, N>::new(faults);

@@ -71,7 +71,7 @@ impl<const N: usize> Records<N> {
         (self.wedged == [false; N]).then_some(self.len as usize)
     }
 
-    /// Updates the index of the contact in a lane. Returns whether its shapes are the same.
+    /// Updates the index of the contact in a lane. Returns whether the lane already had a contact of the same shapes.
     #[inline(always)]
     pub(super) fn keep(&mut self, lane: usize, pair: &ActiveContact) -> bool {
         self.contacts[lane] = pair.contact;
@@ -79,7 +79,8 @@ impl<const N: usize> Records<N> {
     }
 
     /// The impulses of each point along the normal and the tangent, for the warm start in the next tick. Also writes
-    /// them back to the batch, which the next tick may keep, rounded as when a batch is filled with them.
+    /// the impulses back to the batch, because the next tick may keep the batch. There they are rounded as if the batch
+    /// were filled with them.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;

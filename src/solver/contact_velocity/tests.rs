@@ -10,7 +10,7 @@ use crate::simd::{Backend, Machine};
 use crate::solver::settings::SolverSettings;
 use crate::solver::{Solver, Tuning, contact};
 
-/// Not a multiple of four or eight lanes, so that the last group is not full.
+/// Number of bodies. It is not a multiple of four or eight lanes, so that the last group is not full.
 const COUNT: usize = 21;
 
 fn with_context<T>(

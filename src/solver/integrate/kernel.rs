@@ -68,14 +68,14 @@ fn one_by_one(
     }
 }
 
-/// Limits below which no lane has to be limited.
+/// Limits of components. A velocity within these limits does not exceed the speed limit.
 #[derive(Clone, Copy)]
 struct SpeedLimits {
     on_axis: i32,
     turning: i32,
 }
 
-/// The largest component with which a velocity in any direction is within the limit.
+/// The largest number such that a velocity with both components up to this number is within the limit.
 fn on_axis(speed_max: Speed) -> i32 {
     let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
@@ -111,7 +111,7 @@ fn velocities<L: Lanes<N>, const N: usize>(
     true
 }
 
-/// A damped speed, rounded towards 0. The speed is above the minimum of its format.
+/// A damped speed, rounded towards 0. `speed` must be above the minimum of its format.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);

@@ -53,7 +53,7 @@ impl MovingBody {
                 let (force_step, spin_step) = body.acceleration_step(tuning.rate);
                 Some(Self::dynamic(index, force_step, spin_step, &body.settings, tuning))
             }
-            // Gravity is a force, which does not move a body without mass.
+            // Gravity is a force, and forces do not move a body without mass.
             BodyKind::Dynamic => {
                 let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
                 Some(Self::dynamic(index, Vec2::ZERO, Speed::ZERO, &settings, tuning))
@@ -120,7 +120,8 @@ impl MovingBody {
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
-    /// Removes the velocity along locked axes. Locked rotation is a reciprocal radius of gyration of 0.
+    /// Removes the velocity along locked axes. A locked rotation needs no action here: the reciprocal radius of
+    /// gyration of the body is 0.
     fn hold_locked_axes(&self, body: &mut SolverBody) {
         if self.locks.x {
             body.velocity.x = Speed::ZERO;
@@ -134,8 +135,8 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Both summands are within ±16 m, so that the sum does not saturate. It is out of range only below 32 ticks
-            // per second, if impulses have raised a speed above the speed limit.
+            // Both summands are within ±16 m, so that the sum does not saturate. The sum is out of range only below 32
+            // ticks per second, if impulses have raised a speed above the speed limit.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);

@@ -31,18 +31,18 @@ pub(in crate::solver) struct JointSet {
     turning: Vec<Turning>,
     body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
-    /// In the order of the state.
+    /// One entry for each joint, in the order of the state.
     entries: Vec<Entry>,
     hinges: HingeSet,
     parts: Vec<HingeShare>,
-    /// The bodies of anchored hinges.
+    /// The bodies of anchored hinges (see [`HingeShare`]).
     anchored: Vec<u32>,
     /// Slots of joints that are not hinges, in the order of solving, and whether they are in a block.
     others: Vec<(u32, bool)>,
     list: JointList,
-    /// In the order of the state.
+    /// One candidate for each joint, in the order of the state.
     candidates: Vec<Candidate>,
-    /// In the order of the state. Empty if there are no blocks.
+    /// Whether each joint is in a block, in the order of the state. Empty if there are no blocks.
     is_blocked: Vec<bool>,
     blocks: Blocks,
     /// Rows and points in blocks, by slot.
@@ -65,9 +65,9 @@ struct Anchor {
 
 #[derive(Clone, Copy, Debug)]
 enum Entry {
-    /// Index of its input.
+    /// Index of the input of a hinge.
     Hinge(u32),
-    /// Slot of any other joint.
+    /// Slot of a joint that is not a hinge.
     Other(u32),
 }
 
@@ -119,7 +119,7 @@ impl JointSet {
         blocked_parts.clear();
     }
 
-    /// Makes the constraints of all joints, for `parts` threads, and chooses the joints in blocks.
+    /// Makes the constraints of all joints, for `parts` threads, and chooses the joints that are solved in blocks.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,

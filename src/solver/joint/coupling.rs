@@ -1,4 +1,4 @@
-//! Couplings of gears, racks and pulleys. Each measures one row ([`Row::coupled`]).
+//! Couplings of gears, racks and pulleys. A coupling computes one row ([`Row::coupled`]) and the position along it.
 
 use core::cell::Cell;
 
@@ -35,7 +35,7 @@ pub(super) enum Coupling {
     },
     Pulley {
         pulley: Pulley,
-        /// From the wheels to the centres of mass at the start of the tick.
+        /// Vectors from the wheels to the centres of mass at the start of the tick.
         centres: [Vec2<Fx>; 2],
     },
 }
@@ -153,7 +153,7 @@ impl Joint {
     }
 }
 
-/// The error of the mesh, up to whole teeth. One tooth is a full turn.
+/// The error of the mesh, up to whole teeth, as an angle: a full turn of this angle is one tooth.
 fn teeth_apart(gear: &Gear, [a, b]: [Angle; 2], gap: Vec2<Fx>) -> Angle {
     let line = Angle::of(gap).to_bits();
     let teeth =
@@ -168,9 +168,9 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// Measures a gear, with a position of `s` metres per unit of `NA a + NB b` (see `gear.rs`). The direction of the row
-/// has the length `(NA + NB) s / distance`. `s` is that of the pitch line, or that of a row on an angle if smaller,
-/// because with a larger `s` the row would hardly move the wheels.
+/// The row of a gear and the position along it, which is `s` metres per unit of `NA a + NB b` (see `gear.rs`). The
+/// direction of the row has the length `(NA + NB) s / distance`. `s` is that of the pitch line, or that of a row on an
+/// angle if that is smaller, because with a larger `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));
@@ -196,7 +196,8 @@ fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose:
     measured([n, n], arms, pose, -fx_mul(scale, apart), Fx::ONE)
 }
 
-/// `rolled` is the radius times the angle of the rack relative to the wheel.
+/// The row of a rack and the position along it. `rolled` is the radius times the angle of the rack relative to the
+/// wheel.
 fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> Measure {
     let direction = along.widen();
     let across = |arm: Vec2<Fx>| arm.cross(direction);
@@ -207,8 +208,8 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// `ropes` lead from the wheels to the anchors. One factor of at most 1 scales both directions, so that the direction
-/// on B, `ratio` times as long, fits [`Unit`].
+/// The row of a pulley and the position along it. `ropes` lead from the wheels to the anchors. One factor of at most 1
+/// scales both directions, so that the direction on B, `ratio` times as long, fits [`Unit`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
         // An anchor at its wheel counts as hanging down.

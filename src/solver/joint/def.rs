@@ -118,8 +118,8 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with the load in the last sub-step of a tick. Without impulses for the warm start, the load in a
-/// joint's first tick may be overestimated by a third.
+/// It is compared with the load in the last sub-step of a tick. In a joint's first tick, which has no impulses for the
+/// warm start, the load may be overestimated by a third.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

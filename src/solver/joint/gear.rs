@@ -9,8 +9,8 @@
 //! C = NA (a - p) + NB (b - p)        in teeth; wheels that turn against each other have teeth of the same sign
 //! ```
 //!
-//! is known up to whole teeth from the pose alone, because a turn of a wheel is a whole number of teeth. No state can
-//! drift. Wheels that are forced out of mesh by more than half a tooth skip a tooth.
+//! is known up to whole teeth from the pose alone, because a turn of a wheel is a whole number of teeth. The mesh
+//! therefore does not drift. Wheels that are forced out of mesh by more than half a tooth skip a tooth.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ const TEETH_MAX: Fx = fx!(1000);
 const RADIUS_MIN: Fx = fx!(0.001);
 const RADIUS_MAX: Fx = fx!(128);
 
-/// Checks a magnitude. The error states the range for the sign of the number.
+/// Checks the magnitude of a number. The error states the range for the sign of the number.
 fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
     if value < Fx::ZERO { check(what, value, -max, -min) } else { check(what, value, min, max) }
 }

@@ -60,7 +60,7 @@ impl Link {
     }
 }
 
-/// A row or point in a block, by its index among those of all joints.
+/// A row or point in a block, by its index among the rows or the points of this list.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ListPart {
     Row(usize),

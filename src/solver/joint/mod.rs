@@ -1,9 +1,9 @@
 //! Joints: their definitions, their state, and their rows and point blocks.
 //!
 //! A kind of joint lists its parts (`parts`): rows, each with a function (spring, motor, limit, hold) and a direction,
-//! and points, which pull or drive the anchors. Rows of gears, racks and pulleys are measured by a coupling
-//! (`coupling`). Hinges are solved in batches (`hinge`). As in Box2D v3, rows of springs, motors and limits come before
-//! rows that hold a position.
+//! and points, which pull or drive the anchors. A coupling (`coupling`) computes the row of a gear, a rack or a pulley.
+//! Hinges are solved in batches (`hinge`). As in Box2D v3, rows of springs, motors and limits come before rows that
+//! hold a position.
 
 mod block;
 mod cache_key;

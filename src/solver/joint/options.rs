@@ -88,8 +88,8 @@ pub struct Drive {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
-    /// Undamped frequency in Hz, above 0, up to 1000. The effective frequency is lower above a tenth of the sub-step
-    /// rate.
+    /// Undamped frequency in Hz, above 0, up to 1000. Above a tenth of the sub-step rate, the effective frequency is
+    /// lower.
     pub hertz: Fx,
     /// Damping ratio, 0 to 100: 1 is critical damping.
     pub damping_ratio: Fx,

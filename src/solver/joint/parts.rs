@@ -20,7 +20,7 @@ pub(super) mod slot {
     pub(in super::super) const HOLD: u8 = 4;
 }
 
-/// The direction along which a row of a joint measures.
+/// The position on which a row of a joint acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     /// The angle of B's frame in A's.
@@ -34,7 +34,7 @@ pub(super) enum Direction {
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
-    /// The position that the coupling with this index measures.
+    /// The position that the coupling with this index computes.
     Coupled(u32),
 }
 
@@ -71,8 +71,8 @@ impl Parts<'_> {
         self.drive_within(direction, drive, None);
     }
 
-    /// Adds a motor that does not drive beyond a limit along the same direction. The impulses of an unlimited motor
-    /// against a limit would grow in every sub-step.
+    /// Adds a motor that does not drive beyond a limit along the same direction. Otherwise the impulses of an unlimited
+    /// motor and of the limit would grow in every sub-step.
     pub(super) fn drive_within(
         &mut self,
         direction: Direction,
@@ -126,7 +126,7 @@ impl Parts<'_> {
     }
 }
 
-/// The impulse of a force in a sub-step times `mA + mB`, in m/s, or in m²/s for a torque.
+/// The impulse of a force in a sub-step times the sum of the inverse masses, in m/s, or in m²/s for a torque.
 pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
     let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
     let per_second = over(masses.0).saturating_add(over(masses.1));

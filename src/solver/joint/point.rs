@@ -11,10 +11,10 @@ use crate::math::{Speed, Unit, Vec2};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors together with isotropic stiffness, in the bias pass only. Impulses times `mA + mB` are at most
-    /// `max`.
+    /// Pulls the anchors together with isotropic stiffness, in the bias pass only. Impulses times the sum of the
+    /// inverse masses are at most `max`.
     Spring { softness: Softness, max: Speed },
-    /// Drives the anchors to a relative velocity. Impulses times `mA + mB` are at most `max`.
+    /// Drives the anchors to a relative velocity. Impulses times the sum of the inverse masses are at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
 }
 
@@ -44,7 +44,7 @@ impl JointPoint {
         }
     }
 
-    /// Largest impulse times `mA + mB`; [`Speed::MAX`] is unlimited.
+    /// Largest impulse times the sum of the inverse masses; [`Speed::MAX`] is unlimited.
     pub(super) fn impulse_max(&self) -> Speed {
         let (PointTask::Spring { max, .. } | PointTask::Drive { max, .. }) = self.task;
         max

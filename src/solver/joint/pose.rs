@@ -1,4 +1,4 @@
-//! The anchors of a joint at the current pose, and the positions that its rows measure.
+//! The anchors of a joint at the current pose, and the rows and positions along its directions.
 
 use core::cell::Cell;
 
@@ -26,14 +26,14 @@ pub(super) struct BodyRotation {
 pub(super) struct Ends {
     body_a: u32,
     body_b: u32,
-    /// From the centre of mass of A to the anchor, in the frame of A.
+    /// Vector from the centre of mass of A to the anchor, in the frame of A.
     local_a: Vec2<Length>,
-    /// From the centre of mass of B to the anchor, in the frame of B.
+    /// Vector from the centre of mass of B to the anchor, in the frame of B.
     local_b: Vec2<Length>,
     inverse_gyration_a: Reciprocal,
     inverse_gyration_b: Reciprocal,
     fractions: MassFractions,
-    /// From the centre of mass of A to that of B at the start of the tick.
+    /// Vector from the centre of mass of A to that of B at the start of the tick.
     between: Vec2<Fx>,
     /// X axis of the joint's frame on A, in the frame of A.
     axis: Vec2<Unit>,
@@ -103,7 +103,7 @@ impl Ends {
         let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
         let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // From the anchor to that point, for B and for A.
+        // Vectors from the anchors to that point, for B and for A.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = pose.gap + to_b - to_a;
@@ -115,7 +115,7 @@ impl Ends {
         }
     }
 
-    /// Measures along a direction other than a coupling.
+    /// The row and the position for a direction other than a coupling.
     pub(super) fn measure(
         &self,
         direction: Direction,
@@ -145,8 +145,8 @@ impl Ends {
         }
     }
 
-    /// Measures along an axis that turns with A. A's arm therefore reaches to B's anchor, unless it is too long
-    /// ([`JointPose::levers_at_one_point`]).
+    /// The row and the position along an axis that turns with A. A's arm therefore reaches to B's anchor, unless it is
+    /// too long ([`JointPose::levers_at_one_point`]).
     fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);
@@ -182,8 +182,8 @@ impl JointPose {
         Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
     }
 
-    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Without [levers at one
-    /// point](Self::levers_at_one_point), impulses act only along the line between the centres.
+    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. If there are no
+    /// [levers at one point](Self::levers_at_one_point), impulses act only along the line between the centres.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),
@@ -194,8 +194,9 @@ impl JointPose {
         }
     }
 
-    /// Levers to one point, which conserve angular momentum: B's anchor if A reaches it or if impulses do not move one
-    /// of the bodies, otherwise the end of A's arm, shortened to the reach of A. `None` if B does not reach that end.
+    /// Levers to one point, which conserve angular momentum. The point is B's anchor if A reaches it, or if impulses do
+    /// not move one of the bodies. Otherwise it is the end of A's arm, shortened to the reach of A. `None` if B does
+    /// not reach that end.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

@@ -12,7 +12,7 @@ const BLOCK: usize = 16;
 
 pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
-    /// Indexed by body, like the next two.
+    /// Indexed by body, like the next two fields.
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],

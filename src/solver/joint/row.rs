@@ -1,6 +1,7 @@
 //! The scalar rows of a joint: springs, motors, limits, and rows that hold a position.
 //!
-//! With the position `x` along a direction (angles and angular speeds times the length `s` of the row):
+//! With the position `x` along a direction and the inverse masses `mA` and `mB` (angles and angular speeds are
+//! multiplied by the length `s` of the row):
 //!
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
@@ -12,9 +13,9 @@
 //! ```
 //!
 //! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of point masses, with
-//! `m = 1 / (mA + mB)`, so that its force follows from a potential. Where it also turns the bodies, its scales depend
-//! on the mobility `D` ([`Softness::at_mobility`]). With constant scales, the stiffness `omega^2 m / D` would change as
-//! arms turn.
+//! `m = 1 / (mA + mB)`, so that its force follows from a potential. Where the spring also turns the bodies, its scales
+//! depend on the mobility `D` ([`Softness::at_mobility`]). With constant scales, the stiffness `omega^2 m / D` would
+//! change as arms turn.
 //!
 //! The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
@@ -58,7 +59,7 @@ pub(super) struct Measure {
     /// Units of the row per unit of the position: `s` for an angle, the factor of the directions for a pulley,
     /// otherwise 1.
     pub(super) scale: Fx,
-    /// For an axis that turns with A: the arms over the radii of gyration.
+    /// For an axis that turns with A: the arms over the radii of gyration. Otherwise [`NO_REACH`].
     pub(super) reach: [Ratio; 2],
 }
 
@@ -252,7 +253,7 @@ impl JointRow {
 }
 
 /// The largest speed in m/s at which a limit may be approached: the limit is not passed within a sub-step. Beyond the
-/// limit, where `gap` is negative, it is `bias_rate` times the gap, which is 0 for a motor.
+/// limit, where `gap` is negative, the speed is `bias_rate` times the gap, which is 0 for a motor.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

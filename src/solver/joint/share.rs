@@ -1,5 +1,5 @@
 //! The joints that each thread solves: a part of the hinges of each colour. One thread also solves all other joints,
-//! while the others wait.
+//! while the other threads wait.
 
 use super::super::context::{SolverPass, StepContext};
 use super::block::Blocks;
@@ -34,7 +34,7 @@ pub(super) struct OwnJoints<'a> {
     pub(super) turning: &'a [Turning],
     /// For each body of the tick, its place in `turning` plus 1.
     pub(super) places: &'a [u32],
-    /// Bodies of anchored hinges.
+    /// Bodies of anchored hinges (see [`HingeShare`]).
     pub(super) anchored: &'a [u32],
 }
 
@@ -70,7 +70,7 @@ impl JointShare<'_, '_> {
         context.wait();
     }
 
-    /// Predicts the rotations in the next sub-step from the velocities after the last one.
+    /// Predicts the rotations in the next sub-step from the velocities at the end of the last sub-step.
     pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
         if self.is_empty {
             return;
@@ -147,8 +147,8 @@ impl OwnJoints<'_> {
     }
 }
 
-/// Coefficients for averaging a lever ratio over a rotation `t`: it changes by `half t` of its length across itself,
-/// and shrinks by `sixth t^2`.
+/// Coefficients for averaging a lever ratio over a rotation `t`: the ratio changes by `half t` of its length across
+/// itself, and shrinks by `sixth t^2`.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,

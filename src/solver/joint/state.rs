@@ -31,7 +31,7 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    /// Boxed so that what every step changes is close together: saving it is memory-bound.
+    /// Boxed, so that the data that every step changes is close together: saving this data is memory-bound.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
     /// Angle of B's frame in A's when the joint was last solved, with whole turns, in units of 2^-32 turn.
@@ -59,7 +59,7 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Impulses are kept if the joint acts and its kind is the same.
+    /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same.
     pub(crate) fn redefine(&mut self, def: JointDef) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {
@@ -68,7 +68,7 @@ impl Joint {
         *self.def = def;
     }
 
-    /// Clears the impulses, because neither body is dynamic.
+    /// Clears the impulses of a joint between two bodies that are not dynamic.
     pub(crate) fn rest(&mut self) {
         self.impulses = JointImpulses::default();
     }
@@ -88,7 +88,8 @@ impl Joint {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn, with the number of whole turns nearest to the last angle.
+    /// The angle of B's frame in A's in units of 2^-32 turn, plus the number of whole turns that brings it nearest to
+    /// the last angle.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }
@@ -174,7 +175,7 @@ impl JointPart {
     }
 }
 
-/// `now` with the number of whole turns nearest to `last`, in units of 2^-32 turn.
+/// `now` plus the number of whole turns that brings it nearest to `last`, in units of 2^-32 turn.
 pub(super) fn nearest_turns(last: i64, now: Angle) -> i64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole turns are dropped")]
     let before = Angle::from_bits(last as u32);

@@ -7,9 +7,9 @@
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is limited to 100. It would be larger only for a body more than 10 000 times as heavy as the other, if the other
-//! does not turn or has at least about 100 times its radius of gyration. An angular impulse `P` corresponds to
-//! `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is limited to 100. It would be larger only for a body more than 10 000 times as heavy as the other one, if the
+//! other one does not turn, or has a radius of gyration at least about 100 times as large. An angular impulse `P`
+//! corresponds to `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};

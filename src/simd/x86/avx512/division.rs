@@ -1,4 +1,5 @@
-//! Quotients `2^BITS / d` of eight numbers at a time, in integers. The powers of two that scale them are left out here:
+//! Quotients `2^BITS / d` of eight numbers at a time, in integers. These formulas leave out the powers of two that
+//! scale the numbers:
 //!
 //! ```text
 //! x  = 1 / m              for the highest 32 bits m of d, on a chord of the curve: 10 correct bits

@@ -1,8 +1,8 @@
 //! Units with bounds in a block: limits, which may only push, and motors and springs of limited force.
 //!
 //! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
-//! the units without bounds, and holds active units beyond a bound at that bound, until there are none. In the first
-//! [`ROUNDS_MAX`] rounds, only the motors furthest beyond are held.
+//! the units without bounds, and holds active units beyond a bound at that bound, until no active unit is beyond a
+//! bound. In the first [`ROUNDS_MAX`] rounds, only those motors are held that are furthest beyond their bounds.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -30,7 +30,7 @@ const OPEN_SCALE: i64 = ONE - (1 << 20);
 /// the impulse times `1 - S^2`, and impulses under leverage are large.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of initial rounds in which only the motors furthest beyond their largest force are held.
+/// Number of initial rounds in which, among the motors, only those furthest beyond their largest force are held.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
@@ -59,8 +59,9 @@ impl Block {
         }
     }
 
-    /// Activates motors, and the limits and springs that would be within their bounds alone. Other springs are held at
-    /// a bound. In the relax pass, springs keep their impulses.
+    /// Activates motors, limits that would push if solved alone, and springs that would be within their bounds if
+    /// solved alone. Other limits get no impulse, and other springs are held at a bound. In the relax pass, springs
+    /// keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
@@ -85,8 +86,8 @@ impl Block {
 
     /// Deactivates units beyond a bound. Returns whether there were any.
     ///
-    /// With `furthest_only`, motors need half the largest excess: while a brake holds a strong motor, the equations
-    /// give both the same impulse, and only the brake should slip.
+    /// With `furthest_only`, motors are deactivated only from half the largest excess: while a brake holds a strong
+    /// motor, the equations give both the same impulse, and only the brake should slip.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {
@@ -112,7 +113,7 @@ impl Block {
         any
     }
 
-    /// Returns whether an impulse has changed.
+    /// Gives inactive units the impulses at which they are held. Returns whether an impulse has changed.
     fn hold(&mut self, context: &StepContext<'_>) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         x.fill(0);

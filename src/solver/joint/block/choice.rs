@@ -4,11 +4,11 @@
 //! joints disturb each other, and may add energy there. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them is not a revolute joint, or
-//! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
-//!   large, or that the sum of its shares over all hinges, without the largest one, is large.
+//! - it is so light, or its arms are so long, that it has a large share in the mobility of the points of two hinges, or
+//!   that the sum of its shares over all hinges, without the largest one, is large.
 //!
-//! Joints of a crowded body are solved in a block if they have rows for one. Crowded bodies with a common joint share a
-//! block, up to [`ROWS_MAX`] rows. Joints of other bodies do not make a body crowded.
+//! Joints of a crowded body are solved in a block if they have rows for a block. Crowded bodies with a common joint
+//! share a block, up to [`ROWS_MAX`] rows.
 
 use alloc::vec::Vec;
 
@@ -20,25 +20,26 @@ use super::super::options::JointLimit;
 use super::super::state::Joint;
 use crate::math::{Fx, Unit, fx_mul};
 
-/// Largest number of rows of a block. The cost of a full matrix grows with the third power of the rows: this size costs
-/// about as much as 5000 contacts.
+/// Largest number of rows of a block. The cost of a full matrix grows with the third power of the rows: a block of this
+/// size costs about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
-/// Smallest share in the mobility of each of two hinges that makes a body crowded.
+/// A body is crowded if its share in the mobility of each of two hinges is at least this.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// Smallest sum of shares, without the largest one, that makes a body crowded. In cloth of discs it is 1.5.
+/// A body is crowded if the sum of its shares, without the largest one, is at least this. In cloth of discs the sum is
+/// 1.5.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// A joint that may be solved in a block.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Candidate {
-    /// The ground for a body that no impulse changes.
+    /// The bodies of the joint, with the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
     /// Number of rows in a block: rows that hold the bodies, springs, limits, and motors along one direction. A joint
     /// without such rows is not solved in a block.
     pub(in super::super) rows: u32,
-    /// Whether it has rows besides that of a motor.
+    /// Whether the joint has rows besides that of a motor.
     pub(in super::super) holds: bool,
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
@@ -115,7 +116,7 @@ const JOINT_ROWS_MAX: usize = 6;
 /// The joints of a crowded body in `Choice::of_body`, as one range for each number of rows.
 #[derive(Clone, Copy, Debug, Default)]
 struct JointsOfBody {
-    /// First joint of each range that is not in a block yet.
+    /// For each range, the first joint that is not in a block yet.
     next: [u32; JOINT_ROWS_MAX],
     ends: [u32; JOINT_ROWS_MAX],
     /// The last walk that has visited the body.
@@ -142,7 +143,8 @@ pub(super) struct Choice {
 const NOT_CROWDED: u32 = u32::MAX;
 
 impl Choice {
-    /// Takes time proportional to the number of joints, even if very many are at one body.
+    /// Chooses the joints and divides them among blocks. Takes time proportional to the number of joints, even if very
+    /// many are at one body.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.order.clear();
         self.block_ends.clear();
@@ -254,8 +256,8 @@ impl Choice {
         }
     }
 
-    /// Adds the joints of a body to the walk, in ascending order. Takes and returns the number of rows. It only grows
-    /// during a walk, so that a joint that does not fit is not tried again.
+    /// Adds the joints of a body to the walk, in ascending order. Takes and returns the number of rows in the walk.
+    /// This number only grows during a walk, so that a joint that does not fit is not tried again.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

@@ -1,12 +1,12 @@
 //! Geometric stiffness: the torque of a pull changes while its arm turns.
 //!
 //! A force `F` that pulls a body outwards at an arm `r` exerts a restoring torque with the stiffness `F . r`, as on a
-//! pendulum. Computed from the pose at the start of each sub-step, it makes the body a kicked rotor with the kick
-//! `kappa = h^2 F . r / I`, whose energy grows if `kappa` is above about 1 (B. Chirikov, "A universal instability of
-//! many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the impulses of its
-//! block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and
-//! P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last
-//! sub-step.
+//! pendulum. If this torque is computed from the pose at the start of each sub-step, the body is a kicked rotor with
+//! the kick `kappa = h^2 F . r / I`, whose energy grows if `kappa` is above about 1 (B. Chirikov, "A universal
+//! instability of many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the
+//! impulses of its block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews,
+//! M. Teichmann and P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force
+//! of the last sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -15,8 +15,8 @@ use super::scaling::{length, product};
 use super::{Block, Blocks};
 use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 
-/// Smallest kick that changes the inertia, with 30 fraction bits. Bodies below it are stable, and a larger inertia
-/// would not conserve angular momentum.
+/// Smallest kick that changes the inertia, with 30 fraction bits. Bodies with smaller kicks are stable, and a larger
+/// inertia would not conserve angular momentum.
 const KICK_MIN: i64 = ONE / 2;
 
 const KICK_MAX: i64 = 1000 * ONE;
@@ -28,8 +28,8 @@ pub(super) enum Leverage {
     None,
     /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios.
     AtPoint([Vec2<Ratio>; 2]),
-    /// The force along an axis turns with A, and acts at a point of B. `|F|` times the length of the body's arm is
-    /// used, which is at least the derivative with respect to its own rotation. Contains the lengths of the lever
+    /// The force along an axis turns with A, and acts at a point of B. `|F|` times the length of a body's arm is used.
+    /// This is at least the derivative with respect to the rotation of that body. Contains the lengths of the lever
     /// ratios.
     AlongAxis([Ratio; 2]),
 }
@@ -104,7 +104,7 @@ impl Block {
         changed
     }
 
-    /// Removes geometric stiffness from the impulses, because joints store them without it.
+    /// Removes geometric stiffness from the impulses, because joints store impulses without it.
     pub(super) fn restore_inertia(&mut self, hinges: &HingeSet, list: &JointList) {
         let Block { units, rows, impulses, .. } = self;
         for unit in units.iter_mut().filter(|unit| unit.is_stiffened()) {

@@ -31,7 +31,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// A matrix of zeros, from the column of the first entry of each row. Reserves no spare memory, because there may
+    /// A matrix of zeros, given the column of the first entry of each row. Reserves no spare memory, because there may
     /// be thousands of blocks.
     pub(super) fn new(mut first: Vec<usize>) -> Self {
         let (mut starts, mut count) = (Vec::with_capacity(first.len()), 0);
@@ -58,7 +58,7 @@ impl Matrix {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
     entries: Vec<i32>,
-    /// With 30 fraction bits: at most 256.
+    /// Reciprocals of the diagonal entries, with 30 fraction bits: at most 256.
     inverses: Vec<i64>,
 }
 

@@ -21,7 +21,7 @@ impl Mobility {
         Mobility { fractions, roots, spins: [ONE; 2], spin_roots: [ONE; 2] }
     }
 
-    /// Returns whether the factors have changed.
+    /// Sets the factors of geometric stiffness. Returns whether they have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         let changed = self.spins != spins;
         if changed {

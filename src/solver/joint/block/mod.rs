@@ -70,7 +70,8 @@ struct Spring {
 #[derive(Clone, Debug, Default)]
 struct Block {
     units: Vec<Unit>,
-    /// Units with a common body, the later one first, and each unit with itself, except a spring between two points.
+    /// Pairs of units with a common body, the later unit first. Each unit is also paired with itself, except a spring
+    /// between two points.
     pairs: Vec<(u32, u32)>,
     rows: Vec<ScaledRow>,
     bias: Scales,
@@ -122,8 +123,8 @@ impl Blocks {
         &self.choice.order
     }
 
-    /// `numbers` has the number of a hinge among the hinges in blocks, or the slot of any other joint. `parts` is
-    /// sorted by slot.
+    /// For each chosen joint, `numbers` contains the number of a hinge among the hinges in blocks, or the slot of any
+    /// other joint. `parts` is sorted by slot.
     pub(super) fn arrange(
         &mut self,
         hinges: &HingeSet,
@@ -293,8 +294,8 @@ impl Block {
         }
     }
 
-    /// Returns the impulses to the joints, clamped to their format. This is not a fault: they are used for geometric
-    /// stiffness, or as initial guesses if the joint leaves the block.
+    /// Returns the impulses to the joints, clamped to their format. Clamping is not a fault here: the impulses are used
+    /// for geometric stiffness, or as initial guesses if the joint leaves the block.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
         for unit in &self.units {

@@ -11,9 +11,9 @@ use crate::math::{Fx, div_round, saturate_wide};
 pub(super) struct Scales {
     /// `S` of the equations in `mod.rs`.
     pub(super) scales: Vec<i64>,
-    /// `1 / (S Q)`, before the solution.
+    /// `1 / (S Q)`, by which the right-hand side is multiplied.
     pub(super) inwards: Vec<i64>,
-    /// `S Q`, after the solution.
+    /// `S Q`, by which the solution is multiplied.
     pub(super) outwards: Vec<i64>,
     /// `impulseScale`.
     pub(super) yields: Vec<i64>,

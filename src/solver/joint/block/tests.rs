@@ -202,7 +202,7 @@ fn blocks_are_those_of_their_definition() {
     }
 }
 
-/// Takes time in proportion to the joints, whatever their sizes.
+/// The choice takes time in proportion to the number of joints, whatever numbers of rows they have.
 #[test]
 fn a_hundred_thousand_joints_at_one_body_are_chosen_at_once() {
     for sizes in [&[3][..], &[5], &[5, 1], &[6, 4, 1, 2]] {

@@ -79,7 +79,7 @@ impl Unit {
         }
     }
 
-    /// The hinge, its limits and its motor. `number` is that among the hinges in blocks.
+    /// The units of a hinge, its limits and its motor. `number` is the number of the hinge among the hinges in blocks.
     pub(super) fn of_hinge(number: usize, hinges: &HingeSet) -> impl Iterator<Item = Self> {
         let hinge = hinges.blocked_hinge(number);
         let row = Some(RowSoftness { mass_scale: hinge.softness.mass_scale, task: BlockedTask::Limit });
@@ -259,7 +259,7 @@ impl Unit {
         [x, y, self.angle_scaling.multiply([angle, 0])[0]]
     }
 
-    /// Returns whether the factors have changed.
+    /// Sets the factors of geometric stiffness. Returns whether they have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         self.mobility.set_spins(spins)
     }

@@ -1,5 +1,5 @@
-//! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`. Beyond a limit, a motor's speed is
-//! clamped to that at which the limit pushes the joint back, instead of 0.
+//! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`. Unlike there, the target speed of a
+//! motor beyond a limit is clamped to the speed at which the limit pushes the joint back, not to 0.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
@@ -30,7 +30,7 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     /// The lower and the upper limit. The row of the upper limit is reversed.
     limits: [LimitRow<N>; 2],
     limit_max: Ints<N>,
-    /// In units of 2^-32 turn.
+    /// Target angles of springs, in units of 2^-32 turn.
     targets: [i64; N],
     stiffness: [Fx; N],
     closed: [Fx; N],
@@ -134,7 +134,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Clamps impulses to the bounds of their rows, which are 0 if there is no row.
+    /// Loads the impulses of a joint, clamped to the bounds of their rows. The bounds are 0 if there is no row.
     pub(super) fn reload(&mut self, lane: usize, impulses: &JointImpulses) {
         let AngleRows { spring, drive, limits, limit_max, .. } = self;
         let within = |slot: u8, max: i32| impulses.0[usize::from(slot)].to_bits().clamp(-max, max);
@@ -145,14 +145,15 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Spring, motor, lower limit, upper limit.
+    /// Impulses of the spring, the motor, the lower limit and the upper limit.
     pub(super) fn impulses(&self, lane: usize) -> [Speed; 4] {
         let [lower, upper] = &self.limits;
         [&self.spring.lambda, &self.drive.lambda, &lower.lambda, &upper.lambda]
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Computes pushes at the current pose. `turns` are the joint angles at the start of the tick.
+    /// Computes the pushes of springs and limits at the current pose. `turns` are the joint angles at the start of the
+    /// tick.
     pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
@@ -332,8 +333,8 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Angular velocity of B relative to A. One that does not fit counts as a fault in lanes with a row, whose `max` is not
-/// 0.
+/// Angular velocity of B relative to A. A velocity that does not fit counts as a fault in lanes in which `max` is above
+/// 0: the lanes with a row.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],

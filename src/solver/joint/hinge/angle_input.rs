@@ -17,7 +17,7 @@ pub(in super::super) const ANGLE_MAX: Speed = Speed::lit("511");
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleParts {
     pub(in super::super) spring: Option<Spring>,
-    /// Whether the angle is held at 0 instead of by a spring.
+    /// Whether the angle is held rigidly at 0, if there is no spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
     pub(in super::super) limit: Option<JointLimit>,
@@ -117,7 +117,7 @@ pub(in super::super) struct AngleInput {
 pub(super) struct SpringInput {
     pub(super) mass_scale: Unit,
     pub(super) impulse_scale: Unit,
-    /// In units of 2^-32 turn.
+    /// Target angle in units of 2^-32 turn.
     pub(super) target: i64,
     /// Push, a speed, per turn from the target: `massScale biasRate 2 pi s`.
     pub(super) stiffness: Fx,
@@ -137,9 +137,9 @@ pub(super) struct DriveInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LimitInput {
-    /// In units of 2^-32 turn.
+    /// Lower limit in units of 2^-32 turn.
     pub(super) lower: i64,
-    /// In units of 2^-32 turn.
+    /// Upper limit in units of 2^-32 turn.
     pub(super) upper: i64,
     /// Push, a speed, per turn beyond a limit: `massScale biasRate 2 pi s`.
     pub(super) closed: Fx,
@@ -151,7 +151,7 @@ pub(super) struct LimitInput {
 }
 
 impl AngleInput {
-    /// Rigid rows have the softness `rigid`.
+    /// Limits and rows that hold the angle have the softness `rigid`.
     pub(in super::super) fn new(
         parts: &AngleParts,
         ends: [&HingeBody; 2],

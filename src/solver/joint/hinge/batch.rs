@@ -9,9 +9,9 @@ use crate::simd::Ints;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
-    /// Where bodies are read.
+    /// The indices from which bodies are read.
     pub(super) bodies: [[u32; N]; 2],
-    /// Where bodies are written: the ground for a body that no impulse changes.
+    /// The indices to which bodies are written: the ground for a body that no impulse changes.
     pub(super) changed: [[u32; N]; 2],
     /// Lever ratios of A and of B.
     pub(super) e: [[Ints<N>; 2]; 2],
@@ -24,7 +24,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) lambda: [Ints<N>; 2],
     /// Whether the hinges have rows on the angle, in [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
-    /// Whether the hinges have a softness of their own, in the record and equal for all of them.
+    /// Whether the hinges have a softness of their own. It is equal for all of them, and stored in the record.
     pub(super) is_tuned: bool,
 }
 
@@ -36,9 +36,9 @@ pub(in crate::solver) struct Records<const N: usize> {
     /// Number of lanes with a hinge.
     pub(super) len: usize,
     pub(super) slots: [u32; N],
-    /// Angles in units of 2^-32 turn, at the start of the tick while it is solved, then at its end.
+    /// Angles in units of 2^-32 turn: at the start of the tick while the tick is solved, and at its end afterwards.
     pub(super) turns: [i64; N],
-    /// Angles while no body is rotated.
+    /// Angles of the hinges if all bodies have the angle 0.
     pub(super) rest: [Angle; N],
     /// Softness of a tuned batch, or of a hinge in a block.
     pub(super) softness: Softness,
@@ -46,14 +46,14 @@ pub(in crate::solver) struct Records<const N: usize> {
 
 #[derive(Clone, Debug)]
 pub(super) struct Shape<const N: usize> {
-    /// From the centres of mass, in the frames of A and of B.
+    /// Vectors from the centres of mass to the anchors, in the frames of A and of B.
     pub(super) arms: [[Ints<N>; 2]; 2],
     /// Lever ratios in the frames of A and of B.
     pub(super) ratios: [[Ints<N>; 2]; 2],
     /// Changes of lever ratios per metre of the gap ([`super::refresh::gap_factors`]).
     pub(super) gap_factors: [Ints<N>; 2],
     pub(super) fractions: [Ints<N>; 2],
-    /// From the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
+    /// Vector from the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
     pub(super) between: [[i64; N]; 2],
 }
 

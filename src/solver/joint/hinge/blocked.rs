@@ -31,7 +31,7 @@ pub(in super::super) struct BlockedHinge {
     pub(in super::super) changed: [u32; 2],
     pub(in super::super) fractions: MassFractions,
     pub(in super::super) e: [Vec2<Ratio>; 2],
-    /// The row that holds the angle, or its spring.
+    /// The row that holds the angle, or the spring on the angle.
     pub(in super::super) angle: Option<BlockedAngle>,
     pub(in super::super) has_limits: bool,
     pub(in super::super) has_drive: bool,
@@ -45,7 +45,7 @@ pub(in super::super) struct BlockedAngle {
 }
 
 impl HingeSet {
-    /// Returns the index among the hinges in blocks.
+    /// Adds a hinge to the hinges in blocks, and returns its index among them.
     pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
         let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
         blocked.push(inputs, angles, core::iter::once(index));
@@ -83,7 +83,7 @@ impl HingeSet {
     }
 
     /// The changes of the impulses in one iteration over each part alone, from impulses of 0: [`Self::take_impulses`]
-    /// has moved them to the block.
+    /// has moved the impulses to the block.
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -116,7 +116,7 @@ impl HingeSet {
         self.blocked_extras[number].map(|extra| &mut self.blocked.extras[extra])
     }
 
-    /// Side 0 is the lower limit.
+    /// The lever ratios of a limit. Side 0 is the lower limit.
     pub(in super::super) fn blocked_limit(&self, number: usize, side: usize) -> [Ratio; 2] {
         self.blocked_rows(number).map_or([Ratio::ZERO; 2], |rows| rows.limit_ratios(side))
     }
@@ -125,7 +125,7 @@ impl HingeSet {
         self.blocked_rows(number).is_none_or(|rows| rows.limit_is_open(side))
     }
 
-    /// The change of the impulse of a limit from 0 in one iteration.
+    /// The change of the impulse of a limit in one iteration, from an impulse of 0.
     pub(in super::super) fn blocked_limit_wanted(
         &self,
         number: usize,
@@ -180,7 +180,7 @@ impl HingeSet {
         }
     }
 
-    /// Moves the impulses to the block: of the point along x and y, and of the row on the angle.
+    /// Moves impulses to the block: those of the point along x and y, and that of the row on the angle.
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let [x, y] = &mut blocked.batches[number].lambda;
@@ -189,7 +189,7 @@ impl HingeSet {
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
-    /// The impulses must be within the limits of the state.
+    /// Returns impulses to the hinge. The impulses must be within the limits of the state.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.batches[number];

@@ -110,7 +110,7 @@ impl Turning {
     }
 }
 
-/// `number factor`, in two parts that fit 64 bits.
+/// `number factor`, computed in two parts, each of which fits 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
     let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
     number * high + round_shift(number * low, 32)
@@ -125,9 +125,9 @@ pub(in super::super) struct Input {
     pub(super) slot: u32,
     pub(super) bodies: [u32; 2],
     pub(super) changed: [u32; 2],
-    /// Index of its rows on the angle.
+    /// Index of the hinge's rows on the angle.
     pub(super) angle: Option<u32>,
-    /// Vectors from the centres of mass, in the frames of the bodies.
+    /// Vectors from the centres of mass to the anchors, in the frames of the bodies.
     pub(super) arms: [Vec2<Length>; 2],
     pub(super) ratios: [Vec2<Ratio>; 2],
     /// Changes of lever ratios per metre of the gap.
@@ -136,7 +136,7 @@ pub(in super::super) struct Input {
     pub(super) between: Vec2<Fx>,
     /// Angle of the joint in units of 2^-32 turn.
     pub(super) turns: i64,
-    /// Angle while neither body is rotated.
+    /// Angle of the joint if both bodies have the angle 0.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
     pub(super) softness: Softness,
@@ -184,8 +184,8 @@ impl Input {
     }
 }
 
-/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the origin on each axis, so that the
-/// clamp does not act, but sums that compute the gap rely on it.
+/// Clamped vector from the centre of mass to an anchor. Both points are within 128 m of the body's origin on each axis,
+/// so that the clamp does not act, but the sums that compute the gap rely on this range.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()

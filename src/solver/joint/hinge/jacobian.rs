@@ -28,8 +28,8 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses above [`PLAIN_MAX`]. Two of 512 m/s may change a velocity by 724 m/s, so that the sums
-    /// saturate.
+    /// Applies impulses above [`PLAIN_MAX`]. Two impulses of 512 m/s may change a velocity by 724 m/s, so that the sums
+    /// must saturate.
     #[cold]
     fn apply_saturating(&mut self, a: VelocityW<L::Int>, b: VelocityW<L::Int>) {
         let VelocityW { x, y, turn } = self.a;

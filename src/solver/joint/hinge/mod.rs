@@ -1,8 +1,8 @@
 //! Hinges: revolute joints and welds with rigid anchors, solved in batches.
 //!
 //! `refresh` computes lever ratios, gains and gaps at the current pose. `warm_start` and `solve` change velocities by
-//! the point block of `point_block.rs`. `angle` does both for the rows on the angle. `prepare` fills batches with
-//! hinges of one colour, and returns their impulses to the state.
+//! the point block of `point_block.rs`. `angle` does all of this for the rows on the angle. `prepare` fills batches
+//! with hinges of one colour, and returns their impulses to the state.
 
 mod angle;
 mod angle_input;
@@ -64,7 +64,7 @@ pub(super) struct Poses<'a> {
 /// Inputs of all hinges, and batches of the overflow and of hinges in blocks. [`HingeShare`] has the others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
-    /// In the order of the state.
+    /// Inputs of all hinges, in the order of the state.
     inputs: Vec<Input>,
     angles: Vec<AngleInput>,
     memo: Memo,
@@ -81,7 +81,7 @@ pub(super) struct HingeSet {
 }
 
 impl HingeSet {
-    /// Invalidates the batches. The next operation refreshes each batch before it uses it, so that the batch is fetched
+    /// Invalidates the batches. The next operation refreshes each batch before using it, so that the batch is fetched
     /// from memory once.
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
@@ -93,7 +93,7 @@ impl HingeSet {
         self.blocked.run_in_order(WarmStart { refresh }, context);
     }
 
-    /// Also refreshes the hinges in blocks.
+    /// Solves the overflow. Also refreshes the hinges in blocks, which `joint/block` solves.
     pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
         self.overflow.run_in_order(Solve { pass, refresh }, context);

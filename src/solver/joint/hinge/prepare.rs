@@ -27,7 +27,7 @@ impl HingeSet {
         blocked_extras.clear();
     }
 
-    /// Returns the index of the input.
+    /// Adds the input of a hinge, and returns its index.
     pub(in super::super) fn push_input(
         &mut self,
         slot: u32,
@@ -174,15 +174,15 @@ impl Coloured<Hinges> {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// All hinges must be anchored.
+    /// Adds the bodies of the hinges, all of which must be anchored.
     fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
             all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));
         }
     }
 
-    /// No two of `N` successive hinges may share a body that impulses change. They must have the same softness, and
-    /// either all or none must have rows on the angle.
+    /// Adds batches of hinges. No two of `N` successive hinges may share a body that impulses change. All hinges must
+    /// have the same softness, and either all or none must have rows on the angle.
     pub(super) fn push(
         &mut self,
         inputs: &[Input],

@@ -4,14 +4,14 @@
 //! then reach to the middle of the gap, with `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`: impulses at one
 //! point conserve angular momentum.
 //!
-//! The products of `K` are exact, in two parts of 32 bits, and then rounded:
+//! The products in `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
 //! ```text
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
 //! Rounding `a e` to the 24 fraction bits of `e` first would multiply its error by `e'`, up to 2^7. The determinant can
-//! be the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
+//! be computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
 
 use core::cell::Cell;
 

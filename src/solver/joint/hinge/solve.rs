@@ -30,7 +30,7 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
         let (pass, refresh) = (self.pass.kind(), &self.refresh);
         let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
         refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-        // Copied, so that the compiler sees that writing to the batch does not change them.
+        // Local copies, so that the compiler sees that writing to the batch does not change them.
         let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
@@ -101,7 +101,7 @@ pub(super) fn wanted<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Returns the change of the impulse along an axis.
+/// Updates the impulse along an axis, and returns its change.
 #[inline(always)]
 fn accumulate<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

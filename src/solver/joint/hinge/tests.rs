@@ -34,7 +34,7 @@ struct Setting {
 
 #[derive(Clone, Copy)]
 struct Sizes {
-    /// In radii of gyration.
+    /// Length of the arms in radii of gyration.
     arm: Fx,
     speed: Fx,
     gap: Fx,
@@ -45,7 +45,7 @@ const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
 /// Sizes at which clamps act.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
-/// As stiff as other hinges, so that both can be compared.
+/// Settings in which anchored hinges are as stiff as other hinges, so that batches can be compared with single hinges.
 fn tuning() -> Tuning {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
     Tuning { anchored: tuning.joint, ..tuning }

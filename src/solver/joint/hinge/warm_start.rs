@@ -1,4 +1,4 @@
-//! Warm start: applies the accumulated impulses, clamped at points to [`STEP_MAX`].
+//! Warm start: applies the accumulated impulses. Impulses of points are first clamped to [`STEP_MAX`].
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::limits::STEP_MAX;

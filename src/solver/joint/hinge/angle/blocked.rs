@@ -34,7 +34,7 @@ impl AngleRows<1> {
         self.has_limit && self.limit_max.0[0] > 0
     }
 
-    /// Side 0 is the lower limit.
+    /// The lever ratios of a limit. Side 0 is the lower limit.
     pub(in super::super) fn limit_ratios(&self, side: usize) -> [Ratio; 2] {
         self.e.each_ref().map(|e| Ratio::from_bits(if side == 0 { e.0[0] } else { -e.0[0] }))
     }
