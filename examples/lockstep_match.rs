@@ -15,7 +15,8 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // In memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its own.
+    // The network is in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its
+    // own.
     let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
     let options = PeerOptions::lockstep();
     let (host, guest) = (PeerIdentity::random(), PeerIdentity::random());

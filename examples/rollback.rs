@@ -7,7 +7,7 @@ use lockstep2d::math::Vec2;
 use lockstep2d::world::Command;
 use lockstep2d_scenes::Scene;
 
-/// A single push.
+/// The input of the player: a single push, in tick 55.
 fn true_input(game: &Sandbox, tick: u64) -> Vec<Command> {
     let pushed = game.world().bodies().filter(|(_, body)| body.is_dynamic()).take(usize::from(tick == 55));
     pushed

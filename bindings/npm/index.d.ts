@@ -137,7 +137,7 @@ export function hashBytes(bytes: Uint8Array): string;
 export class Random {
     /** `seed` is an integer, of which the lower 64 bits count. */
     constructor(seed: number | bigint);
-    /** Assign it to continue from a saved state. */
+    /** State of the generator. Assign a saved state to continue from it. */
     state: { state: bigint; increment: bigint };
     /** A uniform integer from 0 to below `bound`. */
     below(bound: number): number;
@@ -148,8 +148,8 @@ export class Random {
 /** Rule that combines the values of two shapes: `(a + b) / 2`, `sqrt(a b)`, the smaller value, `a b`, the larger value.
  * If the shapes have different rules, the later one in this list applies. */
 export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
-/** Effect of a sensor on dynamic bodies, in proportion to the covered part of each shape, in the frame of the area's
- * body. Effects are 0 by default. */
+/** Effect of a sensor on dynamic bodies, in proportion to the covered part of each shape. Vectors are in the frame of
+ * the area's body. Effects are 0 by default. */
 export interface AreaOptions {
     /** Acceleration in m/s² besides gravity, within ±10 000 on each axis. */
     acceleration?: Vec;
@@ -188,13 +188,13 @@ export interface ShapeOptions {
     rollingResistance?: Num;
     /** Speed of the surface around the shape, clockwise, in m/s, within ±400: 0 by default. */
     surfaceSpeed?: Num;
-    /** Bits of the shape's categories, 64: 1 by default. Shapes collide if the mask of each has a category of the
-     * other. */
+    /** Categories of the shape, one bit each, up to 64: 1 by default. Shapes collide if the mask of each has a category
+     * of the other. */
     category?: bigint | number;
     /** Bits of the categories that the shape collides with: all by default. */
     mask?: bigint | number;
-    /** Shapes of one group other than 0 always collide if it is positive, and never if it is negative. 32 bits: 0 by
-     * default. */
+    /** Two shapes with an equal group always collide if the group is positive, never if it is negative. 32 bits: 0, no
+     * group, by default. */
     group?: number;
     /** Direction in the body's frame in which other shapes pass through; `degrees(90)` is up. */
     oneWay?: Rotation;
@@ -232,16 +232,16 @@ export function box(halfWidth: Num, halfHeight: Num, options?: ShapeOptions): Sh
 export function polygon(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
 /** The convex hull of 3 to 8 points in any order, in metres from the shape's centre, within ±110. */
 export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
-/** All points within `radius` metres, at least 0.002, of the line from `a` to `b`, which are at least as far apart. */
+/** All points within `radius` metres of the line from `a` to `b`. Radius and length are at least 0.002. */
 export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
 /** A line without mass, at least 0.002 m long. It does not collide with segments and chains. */
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
 /** A smooth outline of up to 4096 lines without mass, for ground and walls. `closed` connects the last point with the
- * first. `oneSided` makes it solid only from the right, looking along the points. Both are false by default. */
+ * first. `oneSided` makes the chain solid only from the right, looking along the points. Both are false by default. */
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
 /** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes. `{
- * ...massOf(shapes), mass: 80 }` has the distribution of the shapes. */
+ * ...massOf(shapes), mass: 80 }` is 80 kg with the distribution of the shapes. */
 export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; gyration: Fx };
 
 /** `kinematic` bodies move at their velocity, which forces and contacts do not change. `dynamic` bodies are moved by
@@ -301,7 +301,7 @@ export interface BodyOptions extends BodySettings {
     userData?: bigint | number;
     /** Name in reports: at most 16 letters, digits, `-` and `_`. */
     name?: string;
-    /** At most 4096 with the links of chains: none by default. */
+    /** Shapes of the body, at most 4096; each link of a chain counts. None by default. */
     shapes?: readonly (ShapeDef | ChainDef)[];
 }
 
@@ -329,7 +329,7 @@ export interface JointOptions {
      * - `pulley`: a rope over two wheels that are fixed in the world. */
     type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
     a: BodyId;
-    /** A joint has no effect while neither body is dynamic. */
+    /** Body B. The joint has no effect while neither body is dynamic. */
     b: BodyId;
     /** Place of both anchors in the world, in metres, at the current poses, for `World.addJoint`. Sets `anchorA`,
      * `anchorB`, `angleA` and `angleB`, which must not be given as well. */
@@ -382,11 +382,11 @@ export interface JointOptions {
     radius?: Num;
     /** Positions of the wheels on both sides in the world, in metres (pulley). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` it follows
-     * from the poses. */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` the length
+     * follows from the poses. */
     length?: Num;
-    /** The length on A's side plus `ratio` times that on B's side is at most `length`: 0.25 to 4, 1 by default
-     * (pulley). */
+    /** The length on A's side plus `ratio` times the length on B's side is at most `length` (pulley). 0.25 to 4: 1 by
+     * default. */
     ratio?: Num;
     /** A number of 64 bits for the game: 0 by default. */
     userData?: bigint | number;
@@ -462,9 +462,9 @@ export interface ConfigOptions {
     hitSpeed?: Num;
     /** Largest number of bodies, at most 2^20, the default. `setConfig` cannot change limits. */
     bodyLimit?: number;
-    /** At most 2^20, the default. */
+    /** Largest number of shapes, at most 2^20, the default. */
     shapeLimit?: number;
-    /** At most 2^20, the default. */
+    /** Largest number of joints, at most 2^20, the default. */
     jointLimit?: number;
     /** Largest number of pairs of near shapes in a tick, at most 2^20: 2^18 by default. A tick with more pairs leaves
      * some out, and counts as a fault. */
@@ -483,7 +483,7 @@ export type ConfigInfo = {
 declare class Handle {
     #private;
     protected constructor();
-    /** Every later use except `dispose` throws `DISPOSED`. */
+    /** Frees the object. Every later use except `dispose` throws `DISPOSED`. */
     dispose(): void;
     /** Calls `dispose` at the end of a block: `using world = new World();`. */
     [Symbol.dispose](): void;
@@ -503,7 +503,7 @@ declare class Edits extends Handle {
     #private;
     /** Removes a body with its shapes and joints. */
     despawn(body: BodyId): void;
-    /** Removes a shape. A mass that was not given follows. */
+    /** Removes a shape. The mass of its body changes, unless it was given (`BodyOptions.mass`). */
     removeShape(shape: ShapeId): void;
     /** Replaces the definition of a shape: omitted options have their defaults. */
     setShape(shape: ShapeId, definition: ShapeDef): void;
@@ -512,10 +512,10 @@ declare class Edits extends Handle {
      * Omitted options have their defaults. */
     setJoint(joint: JointId, options: Omit<JointOptions, "anchor" | "axis">): void;
     enableJoint(joint: JointId): void;
-    /** The joint keeps its handle and has no effect. */
+    /** Disables a joint: it keeps its handle and has no effect. */
     disableJoint(joint: JointId): void;
     /** A force in N during the next tick, at a point of the world in metres. Forces add up. Throws `WRONG_KIND` unless
-     * the body is dynamic and enabled, like `applyTorque`, `applyImpulse`, `applyAngularImpulse`. */
+     * the body is dynamic and enabled, as do `applyTorque`, `applyImpulse` and `applyAngularImpulse`. */
     applyForce(body: BodyId, force: Vec, point: Vec): void;
     /** A torque in N m during the next tick, counter-clockwise. */
     applyTorque(body: BodyId, torque: Num): void;
@@ -538,7 +538,8 @@ declare class Edits extends Handle {
     /** Sets the mass of a body; without `mass`, that of its shapes. */
     setMass(body: BodyId, mass?: MassOptions): void;
     setUserData(body: BodyId, data: bigint | number): void;
-    /** At most 16 letters, digits, `-` and `_`, otherwise throws `NAME`. `""` removes the name. */
+    /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise throws `NAME`. `""` removes the
+     * name. */
     setName(body: BodyId, name: string): void;
     /** Returns a body to the simulation. */
     enable(body: BodyId): void;
@@ -551,9 +552,9 @@ declare class Edits extends Handle {
     sleep(body: BodyId): void;
     /** Sets the gravity in m/s², and wakes all bodies. */
     setGravity(gravity: Vec): void;
-    /** Applies impulses away from `centre`, in N s per metre of the width of a shape as seen from there, full within
-     * `radius` metres and falling to 0 over the next `falloff` metres; both are 0 to 1000, and 1 by default. `mask` has
-     * the categories that it acts on: all by default. */
+    /** Applies impulses away from `centre`, in N s per metre of the width of a shape as seen from `centre`. The impulse
+     * is full within `radius` metres and falls to 0 over the next `falloff` metres; `radius` and `falloff` are 0 to
+     * 1000, and 1 by default. `mask` has the categories of the shapes that the explosion acts on: all by default. */
     explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
 }
 
@@ -564,12 +565,12 @@ export class Commands extends Edits {
     constructor();
     /** Adds a body. */
     spawn(options: BodyOptions): undefined;
-    /** Adds a body with one definition at each pose. */
+    /** Adds a body at each pose, all with one definition. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: readonly BodyPose[]): undefined;
     addShape(body: BodyId, shape: ShapeDef): undefined;
     /** Adds a joint, with `anchorA` and `anchorB`. */
     addJoint(options: Omit<JointOptions, "anchor" | "axis">): undefined;
-    /** Adds a joint with one definition between each pair of bodies. */
+    /** Adds a joint between each pair of bodies, all with one definition. */
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: readonly (readonly [BodyId, BodyId])[]): undefined;
     readonly length: number;
     clear(): void;
@@ -642,8 +643,8 @@ export interface Filter {
     sensors?: boolean;
     /** Bodies not to see, at most 8: none by default. */
     except?: readonly BodyId[];
-    /** Shapes that a ray or a cast starts in. `report`: hits. `ignore`: not seen. `resist`, the default: hits of rays,
-     * and of casts that would move deeper. */
+    /** Treatment of shapes that a ray or a cast starts in. `report`: they are hits. `ignore`: they are not seen.
+     * `resist`, the default: they are hits of rays, and of casts that would move deeper into them. */
     initialOverlap?: "resist" | "report" | "ignore";
 }
 /** Hit of a ray. */
@@ -666,7 +667,7 @@ export interface CastHit extends RayHit {
 }
 /** Two shapes. A handle is stale if its shape was removed. */
 export interface ContactEvent {
-    /** The one in the smaller slot. */
+    /** The shape in the smaller slot. */
     shapeA: ShapeId;
     shapeB: ShapeId;
 }
@@ -710,18 +711,18 @@ export class World extends Edits {
     clone(): World;
     /** Adds a body, and returns its handle. */
     spawn(options: BodyOptions): BodyId;
-    /** Adds a body with one definition at each pose, or none if one is refused. A recording stores the definition
-     * once. */
+    /** Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
+     * definition once. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: readonly BodyPose[]): BodyId[];
     /** Adds a shape to a body, and returns its handle. */
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
     /** Adds a joint, and returns its handle. */
     addJoint(options: JointOptions): JointId;
-    /** Adds a joint with one definition between each pair of bodies, or none if one is refused. */
+    /** Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. */
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: readonly (readonly [BodyId, BodyId])[]): JointId[];
     /** Advances the world by some ticks, 1 by default, and keeps the events of the last one. */
     step(ticks?: number): void;
-    /** Executes a list of commands, which is kept, and returns the number of refused ones. */
+    /** Executes a list of commands, and returns the number of refused commands. The list is kept. */
     execute(commands: Commands): number;
     /** Hash of the state: 32 hexadecimal digits. */
     hash(): string;
@@ -749,7 +750,7 @@ export class World extends Edits {
     restore(snapshot: Snapshot): void;
     /** Undefined if the body is not in the world. */
     body(body: BodyId): BodyInfo | undefined;
-    /** Undefined if the body has none or is not in the world. */
+    /** Undefined if the body has no name or is not in the world. */
     bodyName(body: BodyId): string | undefined;
     /** Velocity in m/s of a body at a point of the world, in metres. */
     velocityAt(body: BodyId, point: Vec): Vec2;
@@ -777,8 +778,8 @@ export class World extends Edits {
     /** Force in N on body B in the last sub-step, and torque in N m about B's anchor. Undefined if the joint is not in
      * the world. */
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
-    /** For drawing, five floats for each enabled body: handle, x, y, angle in radians, and 1 if awake, otherwise 0.
-     * With a `target` that is long enough, the result is a part of it. */
+    /** For drawing, five floats for each enabled body: handle, x, y, angle in radians, and 1 if awake, otherwise 0. If
+     * `target` is long enough, the floats are written to it, and the result is a part of it. */
     poses(target?: Float64Array): Float64Array;
     /** The events of the last tick: after `step(120)`, those of the 120th. */
     events(): Events;
@@ -794,14 +795,14 @@ export class World extends Edits {
     overlapBox(lower: Vec, upper: Vec, filter?: Filter): ShapeId[];
     /** Shapes that contain a point, in slot order. */
     overlapPoint(point: Vec, filter?: Filter): ShapeId[];
-    /** The shape nearest to a point, within a distance in metres. The distance is negative inside. `point` is on the
-     * surface, `normal` the unit vector from the given point to the shape. */
+    /** The shape nearest to a point, within a distance in metres. `distance` is negative inside the shape, `point` is
+     * on its surface, and `normal` is the unit vector from the given point to the shape. */
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
 /** Geometry and abilities of a character, which stays upright. */
 export interface MoverOptions {
-    /** Only its geometry matters. */
+    /** Geometry of the character. Other options of the shape have no effect. */
     shape: ShapeDef;
     /** Steepest slope that counts as ground, measured from the horizontal; 45 degrees by default. */
     slopeMax?: Rotation;
@@ -833,7 +834,7 @@ export interface MoverState {
     position: Vec;
     /** In m/s: relative to the ground on which the character stands, otherwise in the world. */
     velocity?: Vec;
-    /** Without it, the character is in the air. */
+    /** The ground on which the character stands; undefined in the air. */
     ground?: MoverPlane | undefined;
 }
 export interface Moved {
@@ -855,7 +856,7 @@ export interface Moved {
 /** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and is carried by moving
  * ground. The game adds gravity to the velocity. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
-/** For saves and hashes. */
+/** Encodes the state of a character, for saves and hashes. */
 export function encodeMoverState(state: MoverState): Uint8Array;
 export function decodeMoverState(bytes: Uint8Array): Moved["state"];
 
@@ -886,7 +887,7 @@ export interface Verdict {
     /** - `match`: valid. The inputs reproduce every checkpoint, the last state and the results of the file.
      * - `claim_mismatch`: the last state or a result differs from the file.
      * - `diverged`: a checkpoint differs.
-     * - `incomplete`: the file ends before its trailer; its part is valid.
+     * - `incomplete`: the file ends before its trailer, but is valid up to its end.
      * - `malformed`: the bytes are not a replay.
      * - `limit_exceeded`: the file exceeds one of the `Limits`.
      * - `unverifiable`: recorded with another version of the engine, or other rules. */
@@ -895,8 +896,8 @@ export interface Verdict {
      * `diverged`; otherwise 0. */
     ticks: number;
     /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay`, the
-     * hash passed to `verdict`. For a `Recording` it covers the number of refused commands as well, so that it differs
-     * from `World.hash()`. */
+     * hash passed to `verdict`. For a `Recording`, the hash also covers the number of refused commands, so that it
+     * differs from `World.hash()`. */
     hash: string;
     /** The verdict in words. */
     text: string;
@@ -907,7 +908,7 @@ export class Timeline extends Handle {
     /** Throws `RECORD`, with the `verdict`, if the file cannot be played. */
     constructor(bytes: Uint8Array, limits?: Limits);
     readonly ticks: number;
-    /** 0 at first. */
+    /** The current tick, 0 at first. */
     readonly tick: number;
     /** Goes to a tick, and compares states on the way with the checkpoints of the file. */
     seek(tick: number): void;
@@ -922,7 +923,7 @@ export class Timeline extends Handle {
 /** Verifies a replay of a world, which may come from any source. */
 export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 
-/** A world that lists of commands alone change, recorded while it runs. */
+/** A world whose inputs are lists of commands, recorded while it runs. */
 export class Recording extends Handle {
     #private;
     /** `setup` has the commands that build the world; a refused one throws. Its bodies have the handles 0, 1, 2 and so
@@ -939,7 +940,7 @@ export class Recording extends Handle {
 }
 /** Inputs of a tick. */
 export interface TickInputs {
-    /** All players or seats in order. */
+    /** Inputs of all players or seats, in order. */
     inputs: Uint8Array;
     /** Bit for each empty seat, whose input is zeros. */
     absent: bigint;
@@ -967,8 +968,8 @@ export class Recorder extends Handle {
     /** Records the inputs of all players, and a bit for each absent player, whose input has to be zeros.
      * `Match.finalInputs` returns both. Returns whether `checkpoint` has to follow. */
     record(inputs: Uint8Array, absent?: bigint): boolean;
-    /** Adds a result such as a score, with a name of 1 to 64 bytes, at most 256 different ones. They can be read
-     * without playing the replay. */
+    /** Adds a result such as a score, with a name of 1 to 64 bytes. A replay has at most 256 results, with different
+     * names. They can be read without playing the replay. */
     claim(name: string, number: number | bigint): void;
     /** Passes the hash of the state after the tick of `record`. */
     checkpoint(hash: string): void;
@@ -1079,13 +1080,13 @@ export interface MatchOptions {
     patience?: number;
     /** Number of this peer, of 32 bits: random by default. Use a new one each time the page is loaded. */
     peer?: number | undefined;
-    /** Identity of the player, of 64 bits: random by default. A peer that joins with the same key gets its seat
-     * back. */
+    /** Identity of the player, of 64 bits: random by default. A peer that joins with the same key gets its seat back,
+     * if that is free. */
     key?: bigint | undefined;
     /** Secret numbers of 64 bits against packets with forged addresses: random by default. */
     secret?: readonly [bigint, bigint] | undefined;
-    /** For example versions, rules and setup, at most 512 bytes: none by default. A peer with a different offer is
-     * refused. */
+    /** Data that all peers have to agree on, for example versions, rules and setup, at most 512 bytes: none by default.
+     * A peer with a different offer is refused. */
     offer?: Uint8Array | undefined;
     /** Address of a participant of the match to join. Without it, a match is opened. */
     contact?: Uint8Array | undefined;
@@ -1112,13 +1113,13 @@ export type MatchStatus =
  * - `status`: the new `status`.
  * - `view`: voters, seats, start or end of the match have changed; `value` counts the changes.
  * - `seated`, `unseated`: from `tick` on, `peer` has or has lost `seat`.
- * - `waiting`: play stalls for inputs of `peer`; `value` is 1 if it is heard, also through other peers.
+ * - `waiting`: play stalls for inputs of `peer`; `value` is 1 if that peer is heard, directly or through others.
  * - `resumed`: play continues.
  * - `pause`: `peer` requests a pause (`value` is 1) or withdraws its request (0).
  * - `end`: the match ends after `tick` ticks.
  * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
  * - `conflict`: `peer` has issued two different inputs for `tick`. The first to arrive counts.
- * - `tooFarBehind`: the other peers do not keep the inputs that this peer lacks. It has to join again.
+ * - `tooFarBehind`: the other peers may have dropped inputs that this peer lacks. This peer has to join again.
  * - `refused`: the contact refuses the request to join, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks, to be loaded before the next request.
  * - `badState`: a downloaded state is not valid, and is requested again. */
@@ -1174,8 +1175,8 @@ export class Match extends Handle {
     update(now: number): void;
     /** Whether the next tick is due, and the match can take its inputs. */
     isDue(now: number): boolean;
-    /** Issues the inputs of your own seats in order, and plays a tick if possible. Returns whether they were issued; if
-     * not, they may be passed again. */
+    /** Issues the inputs of your own seats in order, and plays a tick if possible. Returns whether the inputs were
+     * issued. If not, they may be passed again. */
     advance(now: number, inputs: Uint8Array): boolean;
     nextRequest(): MatchRequest | undefined;
     /** Passes the hash for a request `checksum`. */
@@ -1187,9 +1188,9 @@ export class Match extends Handle {
     /** Offers the encoded state after `tick` final ticks to peers that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
-    /** Numbers of ticks: `played` in all, `final` with final inputs, `confirmed` played with final inputs. While the
-     * status is `connecting`, `ticks`, `finalInputs`, `link`, `advance`, `reportHash`, and `leave` and all functions
-     * after it throw `NOT_IN_MATCH`. */
+    /** `played` is the number of ticks played, `final` of ticks with final inputs, `confirmed` of ticks played with
+     * final inputs. While the status is `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`,
+     * `link`, `advance`, `reportHash`, `leave`, and all functions below `leave`. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick; undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
@@ -1200,8 +1201,8 @@ export class Match extends Handle {
     link(peer: number): { ping: number; loss: number; delay: number } | undefined;
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
-    /** Requests an end of the match after a number of ticks, sent two seconds before. Until a majority has decided,
-     * other peers can get seats. */
+    /** Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
+     * has decided, other peers can get seats. */
     endAt(ticks: number): void;
     /** Requests a pause, or withdraws the request. */
     pause(paused: boolean): void;
@@ -1212,11 +1213,11 @@ export class Match extends Handle {
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
 }
-/** `encode` and `decode` are for peers that join. */
+/** A game for `MatchDriver`. `encode` and `decode` are for peers that join. */
 export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
-    /** Replaces the state by one from bytes, which may come from any source. Decode them before you free the old state,
-     * which has to stay if they are not valid. */
+    /** Replaces the state by one from bytes, which may come from any source. Decode the bytes before you free the old
+     * state: it has to stay if the bytes are not valid. */
     decode(bytes: Uint8Array): void;
 }
 /** Plays a game in a match: saves, restores and advances it as the match requests. */
@@ -1225,14 +1226,14 @@ export class MatchDriver<Saved = unknown> {
     /** The game has to be in the state before the first tick. `send` sends a packet to an address. */
     constructor(match: Match, game: MatchGame<Saved>, send: (to: Uint8Array, packet: Uint8Array) => void);
     readonly match: Match;
-    /** Number of ticks played, also with guessed inputs. */
+    /** Number of ticks played, including those with guessed inputs. */
     readonly tick: number;
     /** Whether the game has played all ticks of a finished match with final inputs. */
     readonly ended: boolean;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
-     * returns the inputs of your own seats in order. Returns the events; a `state` has been decoded. After an error of
-     * the game, every further call throws that error. */
+     * returns the inputs of your own seats in order. Returns the events. For an event `state`, the game has already
+     * decoded the state. After an error of the game, every further call throws that error. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 

@@ -1,7 +1,7 @@
 // Tests the lobby of examples/web in headless Chromium: node bindings/npm/test-lobby.mjs RELAY [SCREENSHOT]
 //
 // Two pages play through the relay (the program `lockstep2d-relay`). One page is reloaded and gets its seat back. Then
-// the pages connect by WebRTC, unless WEBRTC=0. Both end with the same hash, and the replay verifies.
+// the pages connect by WebRTC, unless WEBRTC=0. Both pages end with the same hash, and the replay verifies.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { writeFileSync } from "node:fs";

@@ -1,8 +1,8 @@
 // A match through the relay: node bindings/npm/test-relay.mjs RELAY PUSH LOCKSTEP2D
 //
 // The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
-// Node and a native one play 3000 ticks. One is paused for five seconds, one is restarted with its key. All three end
-// with the same hash. The peers that play from the first tick write equal replays, which verify.
+// Node and a native one play 3000 ticks. One of those in Node is paused for five seconds, the other is restarted with
+// its key. All three end with the same hash. The peers that play from the first tick write equal replays, which verify.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -37,7 +37,7 @@ function start(program, ...args) {
 const flags = typeof WebSocket === "undefined" ? ["--experimental-websocket", "--no-warnings"] : [];
 const peer = (...args) => start(process.execPath, ...flags, PEER, ...args);
 
-/** A sandbox also hashes the number of refused commands, here 0. */
+/** The hash of a sandbox, which also covers the number of refused commands, here 0. */
 function sandboxHash(world) {
     const bytes = (digits) => Buffer.from(digits, "hex").reverse();
     return L.hashBytes(Buffer.concat([bytes(world), bytes(L.hashBytes(new Uint8Array(8)))]));

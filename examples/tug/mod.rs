@@ -52,7 +52,7 @@ impl Game for Tug {
         self.world.step();
     }
 
-    /// The handle `ball` never changes.
+    /// The hash of the world is sufficient, because the handle `ball` never changes.
     fn state_hash(&self) -> StateHash {
         self.world.state_hash()
     }

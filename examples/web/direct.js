@@ -1,11 +1,11 @@
 // WebRTC data channels between the members of a room. The relay carries the signals, and packets between members
 // without an open channel.
 //
-// A channel is unordered and does not resend lost packets. Both routes use the addresses of the relay. A signal is JSON
-// after a prefix with which no packet of a match begins.
+// A channel is unordered and does not resend lost packets. Packets over a channel use the addresses of the relay, too.
+// A signal is JSON after a prefix with which no packet of a match begins.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
-// A STUN server between networks: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
+// Members in different networks need a STUN server: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
 const CONFIG = {};
 const CHANNEL = { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 };
 
@@ -54,7 +54,8 @@ export class Direct {
         this.#links.clear();
     }
 
-    // The member whose address comes first, as text, makes the offer. The other one requests it with a `wish`.
+    // The member whose address comes first, as text, makes the offer. The other member requests the offer with a
+    // `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));

@@ -32,7 +32,7 @@ export class Player {
         this.direct = new Direct(relay);
         this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
         this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
-        // Browsers slow down timers in the background.
+        // Packets also drive the match, because browsers slow down timers in the background.
         this.direct.onPacket = (from, packet) => {
             this.driver.receive(performance.now(), from, packet);
             this.update();

@@ -19,7 +19,7 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Call it every few seconds: the match keeps inputs only for minutes. */
+    /** Records the final ticks so far. Call it every few seconds, because the match keeps inputs only for minutes. */
     follow(match) {
         if (this.broken || match.status === "connecting") {
             return;

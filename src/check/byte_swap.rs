@@ -77,7 +77,7 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
-        // The world's own hash covers all bytes of the world.
+        // The world's own hash covers all bytes of the world, so these are not swapped.
         let world = world_in::<G>(moment, now)?;
         let byte_swaps = self.donors.iter().flat_map(|donor| byte_swaps(&moment.bytes, donor));
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();

@@ -34,10 +34,10 @@ pub struct Checked {
     pub simulated: u64,
 }
 
-/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports the variants
+/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
 /// except [`Variant::Recorded`].
 ///
-/// Must not be used after its first finding.
+/// A checker must not be used after its first finding.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::Command};
@@ -63,7 +63,7 @@ pub struct Checker<'s, G: Game> {
     work: u64,
     /// Digests of the phases of the last tick, if phases are compared.
     phases: Vec<PhaseDigest>,
-    /// Empty before the tick at which checking begins.
+    /// The games that play the variants. Empty before the tick at which checking begins.
     replicas: Vec<Replica<G>>,
 }
 

@@ -49,7 +49,8 @@ pub struct Failure {
     /// The finding in the minimised replay.
     pub minimised: Finding,
     /// Replay file with as few ticks and inputs as were found within the budget. [`check_replay`](super::check_replay)
-    /// reproduces the failure, unless it is random. Then the checkpoints of the replay may be wrong as well.
+    /// reproduces the failure, unless the failure is random. In that case the checkpoints of the replay may be wrong as
+    /// well.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,

@@ -104,7 +104,7 @@ pub struct Finding {
     /// The first phase whose digest differs, if phases are compared. `None` also if a difference existed before the
     /// step.
     pub phase: Option<Phase>,
-    /// Depth of the rollback in ticks, and the predicted inputs before it.
+    /// Depth of the rollback in ticks, and the predicted inputs that were played before it.
     pub rollback: Option<(u32, Guess)>,
     /// The fields that differ. `a` is the reference run or the saved state, `b` is the variant or the loaded state.
     /// Empty if the states are not available, or if their saves are equal.

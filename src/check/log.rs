@@ -1,4 +1,4 @@
-//! The inputs of every tick, which logs derived from each other share.
+//! The inputs of every tick. Logs that are derived from each other share these inputs.
 
 use alloc::rc::Rc;
 use alloc::vec;

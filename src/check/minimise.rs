@@ -82,7 +82,7 @@ pub(super) fn minimise<G: Game>(
     }
     let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
     let variant = finding.variant;
-    // A random failure can appear in any variant, so that [`Variant::Again`] is tried first.
+    // A random failure can appear in any variant, so [`Variant::Again`] is tried first.
     let (finding, best) = [Variant::Again, variant]
         .into_iter()
         .find_map(|variant| search.begin(log, variant, &finding))

@@ -66,12 +66,12 @@ pub fn check<G: Game>(
     minimise::run(setup, &log, options).map_err(|finding| failed(setup, &log, *finding, options))
 }
 
-/// Checks a game with the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its checkpoints are
-/// ignored.
+/// Checks a game with the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The checkpoints of
+/// the replay are ignored.
 ///
 /// # Errors
 /// [`CheckError::Failed`] with the fault of the game. [`CheckError::Replay`] if the file is not a replay of this game,
-/// its setup cannot start a game, or it costs more than the limits allow.
+/// its setup cannot start a game, or the check costs more than the limits allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &CheckOptions) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
     minimise::run(&setup, &log, options).map_err(|finding| match finding.fault {

@@ -40,8 +40,8 @@ pub enum Variant {
     Backend(Backend),
     /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// The world has this number of threads, which share every tick after a tick with 256 awake bodies or more. Changes
-    /// nothing without the feature `parallel`, or if the threads cannot be created.
+    /// The world has this number of threads. They share the work of a tick if the tick before it had at least 256 awake
+    /// bodies. The variant changes nothing without the feature `parallel`, or if the threads cannot be created.
     Threads(usize),
     /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, later hashes must not
     /// change either.

@@ -8,13 +8,14 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body of the
-/// scene. Bodies within four times the reach belong to the scene.
+/// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body found
+/// so far. The next body belongs to the scene if it is within four times the reach.
 const SCENE_REACH_MIN: Fx = fx!(16);
-/// Maximum distance, in scene sizes, at which ground is included.
+/// Upper limit of the search distance for ground, in sizes of the scene.
 const GROUND_SIZES: i64 = 12;
-/// Search distance for ground in metres, or the size of a scene larger than 16 m. A falling ball should be shown with
-/// the floor below it, but not with a floor so far away that the ball becomes invisible.
+/// Search distance for ground in metres. For a scene larger than that, the search distance is the size of the scene. A
+/// falling ball should be shown with the floor below it, but not with a floor so far away that the ball becomes
+/// invisible.
 const GROUND_REACH: Fx = fx!(16);
 /// Maximum size in metres of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
@@ -22,8 +23,8 @@ const FIXED_SIZE_MAX: Fx = fx!(512);
 /// The window around the bodies that can move, their joints, and the ground near them, with a margin.
 ///
 /// A body far away from all others is left out, because it would make the rest too small to see. A large fixed shape
-/// contributes only its point nearest to the others. If no body can move, the window shows the fixed shapes of at most
-/// 512 m. The window moves with the bodies.
+/// contributes only its point nearest to the middle of the shown bodies. If no body can move, the window shows the
+/// fixed shapes of at most 512 m. The window moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -49,8 +50,8 @@ fn bounds_of(world: &World, body: &Body) -> Aabb {
     boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
 }
 
-/// The box around the bodies of the scene. In the order of the distance from the median, it ends before the first body
-/// beyond four times [`SCENE_REACH_MIN`] and four times the distance of the body before it.
+/// The box around the bodies of the scene. Bodies are added in the order of their distance from the median. The first
+/// one that is farther than four times the reach ends the scene: see [`SCENE_REACH_MIN`].
 fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     let middle = |component: fn(Vec2<Fx>) -> Fx| {
         let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();

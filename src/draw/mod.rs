@@ -3,9 +3,9 @@
 //! [`primitives`] describes the visible objects in world coordinates, with a meaning ([`Style`]) instead of a colour,
 //! so that all renderers show the same picture. [`svg`] is one of them.
 //!
-//! The contacts are those solved in the last tick, found before the bodies moved: the contacts of a fast body lag
-//! behind its outline by one tick. After [`World::restore`] or [`World::from_bytes`] there are none until the next
-//! tick.
+//! The contacts are those solved in the last tick. They were found before the bodies moved, so the contacts of a fast
+//! body lag behind its outline by one tick. After [`World::restore`] or [`World::from_bytes`] there are none until the
+//! next tick.
 //!
 //! Primitives and SVG use no floating-point numbers: the same world gives the same text on every machine, so that
 //! pictures can be compared with `diff`.

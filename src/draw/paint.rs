@@ -13,13 +13,13 @@ use super::primitive::{ContactProximity, Hue, Style};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paint {
-    /// Name in a legend. Styles with the same meaning share it.
+    /// Name in a legend. Styles with the same meaning share a name.
     pub name: &'static str,
     /// Colour of lines, marks and text, as `0xRRGGBB`.
     pub stroke: u32,
     /// Fill of the enclosed area.
     pub fill: Option<Fill>,
-    /// Width of lines and size of marks in hundredths of a pixel. The SVG reduces it for small bodies.
+    /// Width of lines and size of marks in hundredths of a pixel. The SVG reduces the width for small bodies.
     pub width: u16,
 }
 
@@ -39,7 +39,7 @@ pub const PAPER: u32 = 0xfafaf7;
 const INK: u32 = 0x222222;
 
 /// Colours by [`Hue::index`], from P. Tol's qualitative schemes, which are distinguishable with most colour vision
-/// deficiencies. Neighbours differ strongly.
+/// deficiencies. Neighbouring colours differ strongly.
 const HUES: [u32; Hue::COUNT as usize] = [
     0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377, 0xee7733, 0x009988, 0x332288, 0x999933,
     0xcc3311, 0x882255,

@@ -170,11 +170,11 @@ pub enum Style {
     Sensor,
     /// The outline of a shape of a fixed body, or the radius that shows the rotation of a circle.
     Fixed,
-    /// [`Style::Fixed`], for a kinematic body.
+    /// As [`Style::Fixed`], for a kinematic body.
     Kinematic,
-    /// [`Style::Fixed`], for a dynamic body that is awake.
+    /// As [`Style::Fixed`], for a dynamic body that is awake.
     Dynamic,
-    /// [`Style::Fixed`], for a dynamic body that is asleep.
+    /// As [`Style::Fixed`], for a dynamic body that is asleep.
     Asleep,
     /// The outline of a shape in the colour of its island.
     Island(Hue),
@@ -182,8 +182,8 @@ pub enum Style {
     BroadPhase,
     /// The fat box of a shape in the broad phase.
     FatBox,
-    /// A line from a joint's anchor to the centre of mass of the body, or along the distance between the anchors that
-    /// the joint allows: a rod, a spring, the travel of a slider, a rope.
+    /// A line from a joint's anchor to the centre of mass of the body, or along the part of the distance between the
+    /// anchors that the joint allows: a rod, a spring, the travel of a slider, a rope.
     JointArm,
     /// The displacement of the centre of mass in a tenth of a second at constant velocity.
     Velocity,
@@ -208,7 +208,8 @@ pub enum Style {
     ContactFriction,
     /// A contact point, in the colour of the solver.
     SolverGroup(Hue),
-    /// A contact point that the solver solves by itself, because its bodies have too many contacts.
+    /// A contact point without a solver colour, because its bodies have too many contacts. The solver solves such
+    /// points one by one.
     SolverOverflow,
     /// The id of a body and its name, if it has one.
     Id,
@@ -248,7 +249,7 @@ impl Hue {
 /// Whether a contact point is touching or only speculative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactProximity {
-    /// Further apart: a speculative contact, which prevents fast shapes from tunnelling.
+    /// Further apart than the touching distance: a speculative contact, which prevents fast shapes from tunnelling.
     Speculative,
     /// At most [`Config::touching_distance`](crate::world::Config::touching_distance) apart, the distance at which
     /// contact events begin.

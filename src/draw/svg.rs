@@ -1,8 +1,8 @@
 //! Draws a tick as an SVG document.
 //!
-//! The outlines of a body have its id and its name as a tooltip. The lines and points of another style share one path:
-//! a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that a picture can be enlarged
-//! in a browser to see exactly where two shapes touch.
+//! The outlines of a body have its id and its name as a tooltip. The lines and points of each other style share one
+//! path, so that a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that a picture can
+//! be enlarged in a browser to see exactly where two shapes touch.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;

@@ -153,7 +153,7 @@ pub trait Game: Sized {
     /// Creates the game before its first tick.
     ///
     /// # Errors
-    /// [`SetupError`] if the setup is not playable. It may come from an untrusted file.
+    /// [`SetupError`] if the setup is not playable. A setup may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
 
     /// Creates the game within a budget of `work_max` work units, and returns the units used. The default calls
@@ -187,12 +187,12 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// Work units of the next tick: an upper bound, without the work that the world counts during the step. It limits
-    /// the computing time of an untrusted file. [`World::work`] is the bound of a world.
+    /// Work units of the next tick: an upper bound, without the work that the world counts during the step. This bound
+    /// limits the computing time of an untrusted file. [`World::work`] is the bound of a world.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
-    /// Input of a seat without a player, before one has joined and after it has left. To distinguish absence from
-    /// idleness, return an input that no player can send. Replays record it like any other input.
+    /// Input of a seat without a player: before a player has joined, and after the player has left. To distinguish
+    /// absence from idleness, return an input that no player can send. Replays record it like any other input.
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
@@ -211,7 +211,7 @@ pub trait Game: Sized {
     }
 
     /// Results at the end of a replay, such as a score: at most 256 values with different names of 1 to 64 bytes. A
-    /// verifier compares those of the replay with its own.
+    /// verifier compares the values in the replay with its own.
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }

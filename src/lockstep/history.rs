@@ -29,8 +29,8 @@ pub struct Past<S> {
     pub save: S,
 }
 
-/// Ticks kept in addition to two seconds: entries of mispredicted ticks displace old ones before a rollback removes
-/// them.
+/// Number of ticks kept in addition to two seconds, because entries of mispredicted ticks displace old ones until a
+/// rollback removes the mispredicted ones.
 const ROLLBACK_TICKS: u32 = 16;
 
 /// Saves and state hashes of the last ticks, for rollback and to examine a divergence at its first tick. Saves of a

@@ -76,7 +76,7 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
         Ok(EncodedInputs { bytes, inputs })
     }
 
-    /// Returns `None` if the bytes equal those of `last`.
+    /// Encodes and decodes the inputs of all players. Returns `None` if the bytes equal those of `last`.
     ///
     /// # Errors
     /// As [`EncodedInputs::new`].
@@ -177,7 +177,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.len()
     }
 
-    /// Logs the inputs of the next tick. Returns them encoded and decoded, to step the game with.
+    /// Logs the inputs of the next tick. Returns the inputs as decoded from their bytes, to step the game with.
     ///
     /// # Errors
     /// [`InputError`] if the inputs cannot be logged. The log is unchanged.
@@ -203,7 +203,8 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         Ok(self.extend((!is_same).then(|| inputs.clone())))
     }
 
-    /// Adds a tick with the inputs `new`, or with the last ones if `None`. Returns them.
+    /// Adds a tick with the inputs `new`, or with those of the previous tick if `new` is `None`. Returns the inputs of
+    /// the tick.
     fn extend(&mut self, new: Option<EncodedInputs<I>>) -> &[I] {
         let end = self.ticks() + 1;
         match (new, self.runs.last_mut()) {

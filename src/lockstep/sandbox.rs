@@ -113,7 +113,8 @@ impl Game for Sandbox {
         }
     }
 
-    /// Charges each command before its execution, and the work that the world counts. The limit is at most 100 million.
+    /// Charges each command before its execution, and then the work that the world counts during it. The limit is at
+    /// most 100 million.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });

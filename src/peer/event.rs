@@ -33,7 +33,7 @@ pub enum PeerEvent {
     Desync(PeerDesync),
 }
 
-/// This peer and another one had different states after as many final ticks.
+/// This peer and another one had different states after the same number of final ticks.
 ///
 /// ```
 /// # use lockstep2d::lockstep::Game;

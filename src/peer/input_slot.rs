@@ -13,7 +13,7 @@ pub(super) const LENGTH_BYTES: u16 = 2;
 pub(super) enum InputSlot {
     /// Every input has this many bytes.
     Fixed(u16),
-    /// Two bytes state the length of an input, at most this number. Zeros fill the rest.
+    /// Two bytes state the length of an input, which is at most this number. Zeros fill the rest of the slot.
     Prefixed(u16),
 }
 
@@ -59,7 +59,7 @@ impl InputSlot {
         Ok(())
     }
 
-    /// Decodes the input in a slot. Invalid bytes are the default input for all peers.
+    /// Decodes the input in a slot. Invalid bytes decode to the default input on all peers.
     pub(super) fn take<I: Default + DeserializeOwned>(self, slot: &[u8]) -> I {
         let encoded = match self {
             InputSlot::Fixed(bytes) => slot.get(..usize::from(bytes)),

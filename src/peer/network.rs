@@ -31,7 +31,7 @@ const QUEUE_MAX: usize = 8192;
 pub struct LinkConditions {
     /// Smallest time from sending to receiving.
     pub latency: Duration,
-    /// Largest additional time, random for each packet. It does not change their order.
+    /// Largest additional time, random for each packet. Jitter does not change the order of packets.
     pub jitter: Duration,
     /// Lost packets in percent.
     pub loss: u8,
@@ -94,8 +94,8 @@ struct State {
     rng: Rng,
     now: Duration,
     sent: u64,
-    /// Arrival of the last packet of a link, without [`REORDER_DELAY`]. Later ones arrive no earlier: jitter keeps the
-    /// order.
+    /// Arrival of the last packet of a link, without [`REORDER_DELAY`]. Later packets of the link arrive no earlier, so
+    /// jitter keeps the order.
     last: BTreeMap<(u32, u32), Duration>,
     /// Packets in flight, by arrival and order of sending.
     flying: BTreeMap<(Duration, u64), Datagram>,
@@ -165,7 +165,7 @@ impl Network {
         self.state().cut.insert((from, to));
     }
 
-    /// Ends all calls of [`cut`](Network::cut).
+    /// Undoes all calls of [`cut`](Network::cut).
     pub fn mend(&self) {
         self.state().cut.clear();
     }

@@ -23,8 +23,8 @@ use super::input_slot::{InputSlot, LENGTH_BYTES};
 pub struct PeerOptions {
     /// Largest number of ticks played with guessed inputs, 0 (lockstep) to 32. Default: 0 or, with rollback, 8.
     pub guess: u16,
-    /// Bounds of the input delay in ticks, 0 to 60. Within them it follows the latency. Default: (0, 20) or, with
-    /// rollback, (1, 20).
+    /// Bounds of the input delay in ticks, 0 to 60. Within these bounds the delay follows the latency. Default: (0, 20)
+    /// or, with rollback, (1, 20).
     pub delay: (u16, u16),
     /// Time after which the others continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
     pub patience: Duration,
@@ -89,7 +89,7 @@ impl PeerOptions {
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
         config.timing = Timing { patience, ..Timing::DEFAULT };
-        // Checkpoints of the replay need the hash of the state: the save interval divides theirs.
+        // Checkpoints of the replay need the hash of the state, so the save interval divides the checkpoint interval.
         let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
@@ -99,7 +99,8 @@ impl PeerOptions {
     }
 }
 
-/// Replaces the session's name by that of the option or of the game's method, with its value and range.
+/// Replaces the name of the session's field by the name of the peer's option or the game's method that sets it. Value
+/// and range are those of the option or method.
 fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError {
     match (error.field, slot) {
         ("delay_min", _) => ConfigError { field: "delay.0", ..error },
@@ -133,7 +134,7 @@ fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError 
 pub struct PeerIdentity {
     /// A random number, new for each process.
     pub id: PeerId,
-    /// The identity that outlives processes. A peer that returns with it gets its seat back, if that is free.
+    /// The identity that outlives processes. A peer that returns with this key gets its seat back, if the seat is free.
     pub key: Key,
     /// Random numbers unknown to others: the key of handshake cookies and probe tokens.
     pub secret: [u64; 2],
@@ -148,7 +149,8 @@ pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
 }
 
 impl PeerIdentity {
-    /// An identity from random numbers, new for each process: the id (its low 32 bits), the key, and the secret.
+    /// An identity from random numbers, which must be new for each process. The low 32 bits of the first are the id,
+    /// the second is the key, and the others are the secret.
     #[must_use]
     pub fn new(random: [u64; 4]) -> Self {
         let [id, key, secret @ ..] = random;
@@ -156,8 +158,8 @@ impl PeerIdentity {
         PeerIdentity { id: PeerId(u32::from_le_bytes([a, b, c, d])), key: Key(key), secret }
     }
 
-    /// An identity from random numbers of the operating system. On the web, use [`PeerIdentity::new`] with the
-    /// browser's.
+    /// An identity from random numbers of the operating system. On the web, use [`PeerIdentity::new`] with random
+    /// numbers of the browser.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     #[must_use]
     pub fn random() -> Self {

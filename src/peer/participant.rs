@@ -218,7 +218,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
-    /// the inputs are ignored. Returns whether they were issued: if not, they may be passed again.
+    /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
     /// # Errors
     /// [`PeerError`] if the inputs cannot be issued, or the game or its replay cannot continue.

@@ -1,12 +1,12 @@
 //! [`Sealed`]: a transport that encrypts and authenticates packets with the key of a match.
 //!
 //! A packet has a sender (8 bytes), a counter (8 bytes), the ciphertext and a tag (16 bytes). The cipher is
-//! XChaCha20-Poly1305 with the nonce sender, eight zero bytes, counter. 1200 bytes become 1232 and fit with headers
-//! into 1280, the smallest maximum packet size of IPv6.
+//! XChaCha20-Poly1305. Its nonce consists of the sender, eight zero bytes and the counter. A packet of 1200 bytes
+//! becomes 1232 and fits with headers into 1280, the smallest maximum packet size of IPv6.
 //!
-//! **A nonce must never be used twice with one key.** The counter prevents this in one [`Sealed`]. Across several, such
-//! as after a restart, the sender does, which `Sealed::new` draws from 2^64 numbers. Two of `n` are equal with a
-//! probability of about `n^2 / 2^65`: for 10 000, 3 in 10^12.
+//! **A nonce must never be used twice with one key.** Within one [`Sealed`], the counter prevents this. Between
+//! several, such as before and after a restart, the sender prevents it: `Sealed::new` draws the sender from 2^64
+//! numbers. Two of `n` senders are equal with a probability of about `n^2 / 2^65`: for 10 000 senders, 3 in 10^12.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -22,16 +22,17 @@ pub const SEALED_OVERHEAD: usize = HEADER + TAG;
 const HEADER: usize = 16;
 const TAG: usize = 16;
 const WINDOW_WORDS: usize = 32;
-/// Length of a replay window. Packets that are older than the newest one of their sender by this are dropped.
+/// Length of a replay window. A packet is dropped if the newest packet of its sender is ahead by at least this number.
 const WINDOW: u64 = 2048;
-/// Maximum number of senders with a replay window. Beyond it, the one silent longest is removed.
+/// Maximum number of senders with a replay window. Beyond it, the window of the sender that has been silent longest is
+/// removed.
 const SENDERS_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
 ///
 /// Drops packets that were forged, changed or truncated, arrive again, or come back to their sender. Addresses and
 /// sizes are visible. A member can pose as another one. Old packets are accepted again after a restart, and from
-/// senders whose replay window was removed. They do no harm to a session, because its rows have versions.
+/// senders whose replay window was removed. Old packets do no harm to a session, because its rows have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
@@ -81,7 +82,7 @@ impl Window {
         (usize::try_from(place / 64).unwrap_or(0), 1 << (place % 64))
     }
 
-    /// Whether a packet has not arrived yet. Those older than the window count as arrived.
+    /// Whether a packet has not arrived yet. Packets older than the window count as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
             // `next` would overflow after the largest `u64`, which `Sealed` never sends.

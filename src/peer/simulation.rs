@@ -57,7 +57,8 @@ impl<G: Game> Simulation<G> {
         }
     }
 
-    /// Continues from a received state. After tick 0 there is no replay, for lack of the earlier inputs.
+    /// Continues from a received state. If the state is later than tick 0, there is no replay, for lack of the earlier
+    /// inputs.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
@@ -148,7 +149,8 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Records a tick if possible. The checkpoint at the end of a block needs the state's hash.
+    /// Records a tick. Returns `false` if the tick ends a block and the state's hash, which the checkpoint needs, is
+    /// unknown.
     fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<bool, PeerError> {
         let place = tick.checked_sub(self.first_input).and_then(|place| usize::try_from(place).ok());
         let inputs = place.and_then(|place| self.inputs.get(place)).ok_or(PeerError::NoState { tick })?;
@@ -201,7 +203,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. `hashes` has the other peer's hash at its seats.
+    /// Creates the report of a desync. `hashes` has the other peer's hash at the seats of that peer.
     pub(super) fn report(
         &mut self,
         tick: u64,

@@ -2,7 +2,7 @@ use alloc::vec::Vec;
 
 use crate::session::Address;
 
-/// Carries packets between peers. They may be lost, duplicated, delayed and reordered, and come from anybody.
+/// Carries packets between peers. Packets may be lost, duplicated, delayed and reordered, and come from anybody.
 ///
 /// ```
 /// use lockstep2d::{peer::Transport, session::Address};
@@ -45,7 +45,7 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest payload of an IPv4 packet of 1280 bytes: its headers and UDP's have at least 28 bytes.
+    /// Largest payload of an IPv4 packet of 1280 bytes: the headers of IPv4 and UDP have at least 28 bytes.
     const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.

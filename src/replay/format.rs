@@ -12,8 +12,8 @@ use crate::hash::StateHash;
 
 /// The first eight bytes of a replay file.
 ///
-/// Like the PNG signature, it has a byte above 127, both kinds of line break and an end-of-file character, to detect a
-/// transfer that converts text.
+/// Like the PNG signature, they have a byte above 127, both kinds of line break and an end-of-file character, to detect
+/// a transfer that converts text.
 pub const MAGIC: [u8; 8] = *b"\x89L2D\r\n\x1a\n";
 
 /// Version of the layout. A file of any other version is [`Unverifiable`](super::Verdict::Unverifiable).
@@ -46,7 +46,7 @@ pub(super) mod kind {
     pub(in crate::replay) const TRAILER: u8 = 3;
 }
 
-/// Length (4) and kind (1).
+/// Number of bytes before the payload of a block: length (4) and kind (1).
 pub(super) const BLOCK_HEAD_BYTES: usize = 5;
 
 pub(super) const CHECKSUM_BYTES: usize = 8;
@@ -55,7 +55,7 @@ pub(super) const HASH_BYTES: usize = 16;
 
 /// Hash that a replay stores for a state.
 ///
-/// It covers the inputs so far, because the state hash would miss a changed input that the game ignores.
+/// The hash also covers the inputs so far, because the state hash would miss a changed input that the game ignores.
 #[must_use]
 pub fn checkpoint_hash(state: StateHash, inputs_digest: StateHash) -> StateHash {
     StateHash::of_digests([state, inputs_digest])

@@ -6,7 +6,7 @@ use super::reader::ReadError;
 /// Bounds on the size and computing time of a replay.
 ///
 /// The default allows a day of an ordinary game, and 20 000 million work units: less than an hour of computing, or
-/// about five and a half hours for a file made to be slow. A server for one game should narrow them.
+/// about five and a half hours for a file made to be slow. A server for one game should set lower limits.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -24,12 +24,12 @@ pub struct Limits {
     pub players: u32,
     /// Size of a block's payload in bytes.
     pub block_bytes: u32,
-    /// Ticks between two checkpoints, and in a run.
+    /// Ticks between two checkpoints, and ticks in a run.
     pub block_ticks: u32,
     /// Ticks in the whole game.
     pub ticks: u64,
     /// Bodies in the world of the game ([`Game::world`](crate::lockstep::Game::world)), checked at the start and after
-    /// every tick. `setup_bytes` and `tick_work` bound them in between.
+    /// every tick. Between these checks, `setup_bytes` and `tick_work` bound the number of bodies.
     pub bodies: u64,
     /// Work units of one tick, counted by [`Game::work`](crate::lockstep::Game::work) and by the world during the tick.
     pub tick_work: u64,

@@ -14,8 +14,8 @@
 //!
 //! # Untrusted files
 //!
-//! The [`Limits`] on work and bodies are checked at the start of the game and in every tick, the others before it. A
-//! file is scanned to its end first, so that a damaged file costs no simulation.
+//! The [`Limits`] on work and bodies are checked at the start of the game and in every tick, the other limits before
+//! the start. A file is scanned to its end first, so that a damaged file costs no simulation.
 
 mod bytes;
 mod flaw;

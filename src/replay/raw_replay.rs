@@ -113,7 +113,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies. It is final.
+    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies. The verdict is
+    /// final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -149,7 +150,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         self.play_with(G::step)
     }
 
-    /// Plays the tick whose inputs were read, with this `step`.
+    /// Plays the tick whose inputs were read, by calling `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let RawReplay { game, inputs, limits, position, .. } = self;
         let done = play_within(game, inputs, limits, &mut position.work, step)?;

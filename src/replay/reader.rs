@@ -1,6 +1,6 @@
 //! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! It checks lengths, checksums, the chain, run lengths, the order of the blocks, and the trailer's counts.
+//! The reader checks lengths, checksums, the chain, run lengths, the order of the blocks, and the trailer's counts.
 
 use core::fmt;
 
@@ -155,7 +155,7 @@ pub struct Reader<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     InputsOrTrailer,
-    /// A block with fewer ticks than the interval was the last.
+    /// The last block had fewer ticks than the interval, so no other block of inputs may follow.
     Trailer,
     Nothing,
 }
@@ -232,7 +232,7 @@ impl<'a> Reader<'a> {
         Ok(Some(part))
     }
 
-    /// Reads the next block and checks its checksum; `None` if the file ends before the block.
+    /// Reads the next block and checks its checksum; `None` if the file ends before the end of the block.
     fn frame(&self) -> Result<Option<Block<'a>>, ReadError> {
         let start = self.offset as u64;
         let rest = &self.file[self.offset..];

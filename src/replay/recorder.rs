@@ -112,8 +112,8 @@ impl core::error::Error for RecordError {}
 
 /// Writes the replay of a game that the caller steps. [`Recording`](super::Recording) also steps the game.
 ///
-/// Bytes from [`Recorder::take_bytes`] can be appended to a file: after the header and each block they are a prefix of
-/// a replay. With rollback, record confirmed ticks.
+/// Append the bytes from [`Recorder::take_bytes`] to a file. They end with the header or a complete block, so the file
+/// is a prefix of a replay at any time. With rollback, record only confirmed ticks.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -159,7 +159,7 @@ impl<G: Game> Clone for Recorder<G> {
 impl<G: Game> Recorder<G> {
     /// Starts the game and its replay.
     ///
-    /// The game gets the encoded and decoded setup, as in a verifier.
+    /// The game gets the setup as a verifier decodes it.
     ///
     /// # Errors
     /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
@@ -195,7 +195,7 @@ impl<G: Game> Recorder<G> {
         self.ticks
     }
 
-    /// Records the inputs of the next tick. Returns them encoded and decoded, as in a verifier, to step the game with.
+    /// Records the inputs of the next tick. Returns the inputs as a verifier decodes them, to step the game with.
     ///
     /// # Errors
     /// [`RecordError`] if the inputs cannot be recorded. Do not play the tick.

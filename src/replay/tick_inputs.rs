@@ -39,8 +39,8 @@ impl<'a> TickInputs<'a> {
         Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })
     }
 
-    /// Advances by one tick. Returns its run, with the ticks left including this one, or `None` at the end of the
-    /// complete blocks.
+    /// Advances by one tick. Returns the run of this tick, or `None` at the end of the complete blocks. [`Run::ticks`]
+    /// is the number of remaining ticks of the run, including this one.
     ///
     /// # Errors
     /// [`ReadError`] if the next block is malformed or exceeds a limit.

@@ -6,7 +6,7 @@ use super::limits::LimitKind;
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
-/// Result of verifying a file. Only `Match` means that it is valid.
+/// Result of verifying a file. Only `Match` means that the file is valid.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Verdict, verify}};
@@ -102,9 +102,9 @@ pub enum ClaimDifference {
     Value {
         /// Name of the value.
         name: String,
-        /// Value in the trailer, if it has the name.
+        /// Value in the trailer; `None` if the trailer has no claim with this name.
         claimed: Option<i64>,
-        /// Value of the game, if it reports the name.
+        /// Value of the game; `None` if the game has no claim with this name.
         actual: Option<i64>,
     },
 }

@@ -132,7 +132,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.ticks()
     }
 
-    /// The trailer, if the file is complete. It is verified once the verdict is [`Verdict::Match`].
+    /// The trailer, if the file is complete. The trailer is verified once the verdict is [`Verdict::Match`].
     #[must_use]
     pub fn trailer(&self) -> Option<&Trailer> {
         self.ending.trailer.as_ref()
@@ -142,7 +142,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     ///
     /// # Errors
     /// The [`Verdict`] if the inputs are not valid for this game, exceed a limit on work or bodies, or lead to another
-    /// state. It is final.
+    /// state. The verdict is final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -240,7 +240,7 @@ pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Ver
         .ok_or(Verdict::Malformed { offset: header.setup_offset(), flaw: Flaw::Setup })
 }
 
-/// Creates the game and checks it against the header. Returns it with the work units of its setup.
+/// Creates the game and checks it against the header. Returns the game with the work units of its setup.
 pub(super) fn start<G: Game>(header: &Header<'_>, limits: &Limits) -> Result<(G, u64), Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup = decode_setup::<G>(header)?;

@@ -12,8 +12,8 @@ use crate::replay::Limits;
 /// probable origin first. This costs about as much as playing all ticks two or three times.
 ///
 /// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay shows between which
-/// of its checkpoints they diverge. The exact tick needs a [`Trace`](super::Trace) by the engine that wrote the replay,
-/// or a desync report.
+/// of its checkpoints the two diverge. The exact tick needs a [`Trace`](super::Trace) by the engine that wrote the
+/// replay, or a desync report.
 ///
 /// With `b`, the files are recordings of a match on two machines, or any two replays. Two snapshots are compared
 /// without a simulation.

@@ -70,14 +70,14 @@ pub enum ReportFlaw {
     Players,
     /// The seats are not in ascending order, or one of them does not exist.
     Seats,
-    /// There is not one hash, known or unknown, for each seat.
+    /// The number of hashes, known or unknown, is not the number of seats.
     Hashes,
     /// The ticks of the history are not in ascending order.
     History,
     /// The saves are not in ascending order of ticks, or one is not in the history.
     Saves,
-    /// The phase digests are not in ascending order of ticks, a tick is not in the history, or there are more than
-    /// [`PHASE_DIGESTS_MAX`] in one.
+    /// The phase digests are not in ascending order of ticks, a tick is not in the history, or a tick has more than
+    /// [`PHASE_DIGESTS_MAX`].
     Phases,
 }
 

@@ -62,7 +62,7 @@ fn disturbance(subject: &Subject) -> u128 {
     subject.differences.iter().filter(is_motion).map(units).sum()
 }
 
-/// The bits of two numbers that differ.
+/// The bits of both values of a difference, if both are numbers.
 fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
     let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
     bits(&difference.a).zip(bits(&difference.b))
@@ -76,7 +76,7 @@ pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
 }
 
-/// Searches for the bit flip that explains the differences, and moves its body to the front.
+/// Searches for the bit flip that explains the differences, and moves the body with that bit to the front.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
@@ -94,7 +94,7 @@ pub(super) fn explain<G: Game>(
     }
     let mut candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
     if candidates.is_empty() {
-        // The step may have restored the body: only its contacts differ.
+        // The step may have restored the body, so that only its contacts differ.
         candidates = everybody(&mut game, &wrong.before);
     }
     let Some(culprit) = search(wrong, &mut game, candidates, work) else {

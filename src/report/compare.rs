@@ -150,7 +150,7 @@ fn check_rules<G: Game>(semantics: u32, name: &str, version: u32) -> Result<(), 
     Ok(())
 }
 
-/// The differences between the setups of two replays. Another game is an error.
+/// The differences between the setups of two replays. A replay of another game is an error.
 fn setup_differences<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,

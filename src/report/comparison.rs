@@ -78,12 +78,12 @@ pub enum Blame {
     Unknown,
 }
 
-/// Comparison of one side with the rerun.
+/// Comparison of one side with the rerun, the simulation of the inputs by the running engine.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick before its divergence at which this side is known to equal the rerun.
+    /// The last tick before the divergence of this side at which it is known to equal the rerun.
     pub equal_until: Option<u64>,
     /// The first tick at which this side is known to differ from the rerun.
     pub diverges: Option<u64>,
@@ -129,7 +129,7 @@ pub struct Subject {
 }
 
 /// A single bit flip between two ticks that explains the divergence. In rare cases another flip leads to the same
-/// state, such as of the velocity instead of the spin of a rolling ball.
+/// state, such as a flip in the velocity of a rolling ball instead of its spin.
 ///
 /// ```
 /// use lockstep2d::report::{Comparison, Explanation, Stage};
@@ -157,7 +157,8 @@ pub struct Explanation {
     pub path: String,
     /// Index of the bit, counted from the lowest.
     pub bit: u32,
-    /// The changes by the flip, the number with the bit first. A is before the flip, B after it.
+    /// The changes that the flip causes, starting with the number that has the bit. A is the state before the flip, B
+    /// the state after it.
     pub differences: Vec<Difference>,
 }
 
@@ -194,13 +195,14 @@ pub struct Comparison {
     pub simulated: Option<u64>,
     /// The side that diverged.
     pub blame: Blame,
-    /// The tick of `subjects`: the first different one with both states.
+    /// The tick of `subjects`: the first different tick for which both states are available.
     pub tick: Option<u64>,
     /// The subjects that differ: the origin first, if known, then by the difference in motion, largest first.
     pub subjects: Vec<Subject>,
     /// The stage in which the states diverged, in the tick that led to `first_different`.
     pub stage: Option<Stage>,
-    /// The differences at the start of the world's step, if the states diverged before. B is the diverged side.
+    /// The differences at the start of the world's step, if the states diverged before the step. B is the diverged
+    /// side.
     pub began: Vec<Subject>,
     /// A single bit flip that explains the differences.
     pub explanation: Option<Explanation>,

@@ -84,7 +84,7 @@ impl DesyncReport {
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
     /// The report has the hash of each known tick in the history, and the saves that fit into [`SAVES_BYTES_MAX`]:
-    /// first up to the tick that differs, newest first, then later ones.
+    /// first those up to the tick that differs, newest first, then the later ones.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
@@ -181,7 +181,7 @@ impl DesyncReport {
         &self.body.saves
     }
 
-    /// Phase digests of steps, ascending by the tick that they led to. Only a [`Trace`](super::Trace) has them.
+    /// Phase digests of steps, ascending by the tick that the step led to. Only a [`Trace`](super::Trace) has them.
     #[must_use]
     pub fn phases(&self) -> &[(u64, TickPhases)] {
         &self.body.phases

@@ -147,7 +147,7 @@ impl<'a> SideEvidence<'a> {
         Ok(known)
     }
 
-    /// Whether this side had this state after `tick` ticks; `None` if it states no hash for it.
+    /// Whether this side had this state after `tick` ticks; `None` if the side states no hash for that tick.
     pub(super) fn had(&self, tick: u64, state: StateHash) -> Option<bool> {
         if self.is_rerun {
             return Some(true);

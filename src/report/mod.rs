@@ -1,7 +1,7 @@
 //! Desync reports, and comparisons that find the side that diverged, the tick and the part of the state.
 //!
-//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives another hash than its
-//! own, its game can write a [`DesyncReport`]: hashes and saves of the history, and the replay so far. [`compare`]
+//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When a peer receives a hash that differs
+//! from its own, it can write a [`DesyncReport`]: hashes and saves of the history, and the replay so far. [`compare`]
 //! takes two reports or replays and simulates their inputs again. A side whose states differ from this rerun has
 //! diverged.
 //!

@@ -27,7 +27,7 @@ pub const PHASE_DIGESTS_MAX: usize = 1024;
 pub struct TickPhases {
     /// For each step of the world: the digest at its start, then one after each phase. At most [`PHASE_DIGESTS_MAX`].
     pub digests: Vec<StateHash>,
-    /// The world at the start of its last step, as differences to the bytes after the previous tick.
+    /// The world at the start of its last step, as differences to the world's bytes after the previous tick.
     start: Vec<Patch>,
     /// Length of that world in bytes.
     start_length: u64,
@@ -39,7 +39,7 @@ struct Patch {
     bytes: Vec<u8>,
 }
 
-/// Maximum number of equal bytes within a patch.
+/// Maximum number of consecutive equal bytes within a patch.
 const GAP: usize = 16;
 
 impl TickPhases {

@@ -20,8 +20,8 @@ pub(super) enum Effort {
     /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
     /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged and both states are available, or its file has no further state. Limits rerun
-    /// and search together to two and a half times the work of all ticks.
+    /// Plays until a side has diverged, and either both states are available or that side's file has no further save.
+    /// The rerun and the search together take at most two and a half times the work of all ticks.
     Bounded,
 }
 
@@ -48,7 +48,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After the first different input the states may differ for a good reason.
+    // After the first different input, different states are no divergence.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -126,8 +126,8 @@ fn compare_saves_alone<G: Game>(
 struct States<S> {
     tick: u64,
     states: [S; 2],
-    /// The side without a hash for this tick, presumed to equal the rerun. This is right if it equals the rerun at this
-    /// tick or later, because a diverged side does not converge again.
+    /// The side without a hash for this tick, presumed to equal the rerun. This is right if the side equals the rerun
+    /// at this tick or later, because a diverged side does not converge again.
     presumed: Option<Side>,
 }
 

@@ -6,7 +6,7 @@ use crate::world::Phase;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Before the world's step: by different inputs, by the rules, or by code outside the rules or a memory error.
+    /// Before the world's step. Causes are different inputs, the rules, code outside the rules, or a memory error.
     BeforeStep,
     /// In a phase of the world's step.
     Phase(Phase),

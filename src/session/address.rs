@@ -5,8 +5,8 @@ use super::bytes::{Decoded, Malformed, Reader};
 /// Largest length of an address in bytes.
 pub const ADDRESS_BYTES_MAX: usize = 32;
 
-/// An address of a transport, such as an IP address with a port. Addresses are compared as bytes: the transport must
-/// encode each one in one form. An IPv4 address and its mapped form in IPv6 are different addresses.
+/// An address of a transport, such as an IP address with a port. Addresses are compared as bytes, so the transport must
+/// always encode an address in the same form. An IPv4 address and its mapped form in IPv6 are different addresses.
 ///
 /// ```
 /// use lockstep2d::session::{ADDRESS_BYTES_MAX, Address};

@@ -1,9 +1,10 @@
 //! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are in rows (`row.rs`).
 //!
-//! A voter promises a higher ballot and freezes its acknowledgement. With promises of a quorum the proposer chooses the
-//! change: the one that the promisers accepted in the highest ballot, otherwise its own (`proposal.rs`). A voter
-//! accepts a change if it has promised no higher ballot and holds all inputs before the cut. A change is decided once a
-//! quorum of the old view has accepted it in one ballot. Each peer that sees this installs it.
+//! A voter promises a ballot higher than all it has promised, and freezes its acknowledgement. With promises of a
+//! quorum the proposer chooses the change: the one that the promisers accepted in the highest ballot, otherwise a new
+//! one (`proposal.rs`). A voter accepts a change if it has promised no higher ballot and holds all inputs before the
+//! cut. A change is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees this
+//! installs the change.
 //!
 //! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. Final
 //! ticks lie before it, because a quorum has acknowledged them, and any two quorums have a member in common.
@@ -53,7 +54,7 @@ impl Session {
         self.agree();
     }
 
-    /// Returns whether another step may be possible.
+    /// Does a step of the agreement. Returns whether another step may be possible.
     fn agreement_step(&mut self) -> bool {
         if let Some(change) = self.decided() {
             return self.install(&[(*change).clone()]);

@@ -7,7 +7,7 @@ pub(super) struct Malformed;
 
 pub(super) type Decoded<T> = Result<T, Malformed>;
 
-/// Reads fields from a slice. Nothing is allocated for a stated length before its bytes are present.
+/// Reads fields from a slice. A stated length causes no allocation before that many bytes are present.
 pub(super) struct Reader<'a> {
     rest: &'a [u8],
 }
@@ -101,7 +101,7 @@ pub(super) trait Write {
     fn put_var(&mut self, value: u32) {
         self.put_var64(u64::from(value));
     }
-    /// Writes the difference to `base`, with the sign in the lowest bit.
+    /// Writes `value - base`, with the sign in the lowest bit.
     fn put_near(&mut self, value: u32, base: u32) {
         let above = u64::from(value.saturating_sub(base));
         let below = u64::from(base.saturating_sub(value));

@@ -27,20 +27,22 @@ pub struct Timing {
     /// [`Session::go_on_without`](super::Session::go_on_without) ends a stall earlier.
     pub patience: u64,
     /// Time for which a peer counts as heard after a packet. [`Event::Waiting`](super::Event::Waiting) reports a stall
-    /// longer than this and than six ticks.
+    /// that is longer than both this time and six ticks.
     pub heard: u64,
     /// Time for which a peer's row (its latest status record) counts as fresh.
     pub fresh: u64,
     /// Time for which a proposer with promises from a quorum waits for the other voters.
     pub promises: u64,
-    /// Minimum time between the promise of a ballot and the start of another one, growing with the rounds without a
+    /// Minimum time between the promise of a ballot and the start of another one. It grows with the rounds without a
     /// decision.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
-    /// Maximum time for which a peer that has finished or left still answers, and a leaving peer waits for a decision.
+    /// Maximum time for which a peer that has finished or left still answers; also the maximum time for which a leaving
+    /// peer waits for a decision.
     pub linger_max: u64,
-    /// Upper bound of the time counted between two calls, so that a suspended process does not take others for silent.
+    /// Upper bound of the time counted between two calls, so that a process that was suspended does not take others for
+    /// silent.
     pub step_max: u64,
 }
 

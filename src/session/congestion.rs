@@ -1,15 +1,17 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
 //! Additive increase, multiplicative decrease (Chiu and Jain 1989), about once per round trip. A rate was too high if
-//! more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms: a queue, which delays the
-//! inputs of the match. Loss of up to an eighth is attributed to the link. Until the rate is too high for the first
-//! time, it grows by half after each period in which it limited the sending.
+//! more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms. Such a rise indicates a
+//! queue, which delays the inputs of the match. Loss of up to an eighth is attributed to the link. Until the rate is
+//! too high for the first time, it grows by half after each period in which it limited the sending.
 
-/// Initial, smallest and largest rate, and its increase in a period, in bytes a second.
+/// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;
+/// Smallest rate in bytes a second.
 const RATE_MIN: u64 = 128_000;
-/// Also the limit of all receivers together.
+/// Largest rate in bytes a second, for one receiver and for all together.
 pub(super) const RATE_MAX: u64 = 16_000_000;
+/// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
 /// Rise of the round trip above which a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;

@@ -1,7 +1,7 @@
 //! [`Contacts`]: other contacts for a peer without a vote.
 //!
-//! A spectator receives the match through the peer that admitted it. Without recent rows of a majority it asks other
-//! peers in turn, with the handshake of joining, and continues at its current tick.
+//! A spectator receives the match through the peer that admitted it. Without recent rows of a majority, the spectator
+//! asks other peers in turn, with the handshake of joining, and continues at its current tick.
 
 use alloc::vec::Vec;
 
@@ -47,7 +47,7 @@ impl Contacts {
     }
 
     /// Returns the contact to send a hello to, if one is due. `is_silent` is whether there are no recent rows of a
-    /// majority. `nonce` numbers a new handshake.
+    /// majority. `nonce` returns the number of a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,
@@ -74,7 +74,7 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Returns whether the challenge answers this peer's hello, which confirms the address.
+    /// Returns whether the challenge answers this peer's hello, which confirms the contact's address.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64) -> bool {
         let Some(asked) = self.asked.as_mut().filter(|asked| asked.nonce == nonce) else { return false };
         if asked.cookie != cookie {
@@ -83,7 +83,7 @@ impl Contacts {
         true
     }
 
-    /// A refusal: the next peer is asked.
+    /// Takes a refusal, so that the next peer is asked.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

@@ -50,14 +50,14 @@ pub enum JoinEvent {
     Refused {
         /// Reason.
         reason: RefusalReason,
-        /// The contact's offer, which must equal the offer in the request.
+        /// The contact's offer. A peer joins only with an equal offer.
         offer: Vec<u8>,
     },
     /// The initial state has arrived. The game restores it and then fulfils the requests of the session.
     State {
         /// Number of ticks played before this state.
         tick: Tick,
-        /// The bytes passed to [`Endpoint::offer_state`] on the other side.
+        /// The bytes that the contact passed to [`Endpoint::offer_state`].
         bytes: Vec<u8>,
     },
     /// The download is not a valid state and is requested again.
@@ -284,7 +284,8 @@ impl Endpoint {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after `tick` ticks to the peers that wait for one. Ignored unless all these ticks are final.
+    /// Offers the state after `tick` ticks to the peers that wait for one. The call is ignored unless all these ticks
+    /// are final.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {
@@ -329,7 +330,7 @@ impl Endpoint {
         }
     }
 
-    /// Asks other peers to serve this peer if it has no vote and has lost the majority.
+    /// Asks other peers to serve this peer if it has no vote and has lost contact with the majority.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();

@@ -35,7 +35,7 @@ pub enum Status {
     Kicked,
     /// Announces its departure.
     Leaving,
-    /// Has left, and still answers peers that may not know.
+    /// Has left, and still answers peers that may not know this yet.
     Left,
     /// All ticks of the match are final. This peer still answers others.
     Finished {
@@ -102,7 +102,8 @@ pub enum Event {
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether rows of the peer arrive, directly or through others: it is connected, but its game does not advance.
+        /// Whether rows of the peer arrive, directly or through others. If so, the peer is connected, but its game does
+        /// not advance.
         heard: bool,
     },
     /// The stall of [`Event::Waiting`] is over.
@@ -130,8 +131,8 @@ pub enum Event {
         /// Hash of the other peer's state.
         theirs: u128,
     },
-    /// A peer has issued two inputs for one tick. The first to arrive counts. This peer no longer proposes a seat for
-    /// it.
+    /// Another peer has issued two different inputs for one tick. The first to arrive counts. The local peer no longer
+    /// proposes a seat for it.
     Conflict {
         /// The peer.
         peer: PeerId,
@@ -139,6 +140,6 @@ pub enum Event {
         tick: Tick,
     },
     /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks behind, so that others may have
-    /// dropped inputs that it lacks. It has to join again.
+    /// dropped inputs that this peer lacks. This peer has to join again.
     TooFarBehind,
 }

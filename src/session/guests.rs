@@ -1,5 +1,5 @@
-//! [`Guests`]: peers that join through this peer, until their first row arrives, and uploads to them. Nothing is stored
-//! before the handshake has confirmed an address.
+//! [`Guests`]: peers that join through this peer, and uploads to them. A guest is removed when its first row arrives.
+//! Nothing is stored before the handshake has confirmed an address.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -114,7 +114,7 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Returns packets for guests that are due. Removes guests that take part in the match or have gone.
+    /// Returns the due packets for guests. Removes guests that take part in the match or have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;

@@ -19,6 +19,6 @@ impl fmt::Display for PeerId {
 }
 
 /// Identity of a participant that outlives its process: assigned by a lobby, or derived from a public key. A peer that
-/// returns with it gets its former seat, if that is free and it asks for no other one.
+/// returns with its key gets its former seat, if that seat is free and the peer asks for no other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key(pub u64);

@@ -37,8 +37,8 @@ pub(super) enum JoinPacket {
         cookie: u64,
         offer: Vec<u8>,
     },
-    /// Carries a cookie. The next hello returns it, which proves that its sender receives packets there. The sender of
-    /// a challenge stores nothing.
+    /// Carries a cookie. The next hello returns the cookie, which proves that the joining peer receives packets at its
+    /// address. The sender of a challenge stores nothing.
     Challenge {
         nonce: u64,
         cookie: u64,
@@ -55,8 +55,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// The receiver has the chunks before `next`, and later ones with a set bit. Up to `window` chunks from `next` on
-    /// may be sent.
+    /// The receiver has the chunks before `next`, and the later ones whose bit in `masks` is set. Up to `window` chunks
+    /// from `next` on may be sent.
     Want {
         hash: u64,
         next: u32,

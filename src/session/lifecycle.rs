@@ -93,7 +93,7 @@ impl Session {
             Role::Spectator => 0,
         };
         let wants = seats > 0 && may_have && caught_up && self.is_connected();
-        // The seats of a dropped peer may be taken, so it asks for any.
+        // The seats of a dropped peer may be taken, so this peer asks for any seats.
         let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
         self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
         let notice =

@@ -24,7 +24,7 @@ pub(super) struct Pace {
     delay_at: u64,
     /// Whether this peer waits because another one is far behind.
     held: bool,
-    /// Complete ticks (final ticks, for a peer without a vote) that this peer has not played.
+    /// Number of complete ticks (final ticks, for a peer without a vote) that this peer has not played.
     behind: Tick,
     /// Whether this peer has just got a vote and plays complete ticks before they are due.
     hurries: bool,
@@ -40,7 +40,7 @@ const CATCH_UP: Tick = 12;
 const DELAY_INTERVAL: u64 = 500_000;
 /// Ticks by which a peer without a vote stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Units per tick of leads over other peers.
+/// Number of units per tick in which leads over other peers are measured.
 const PART: i64 = 256;
 
 impl Pace {
@@ -73,7 +73,7 @@ impl Pace {
         self.behind = self.behind.saturating_sub(1);
     }
 
-    /// The inputs were issued but the tick cannot be played yet.
+    /// Notes that the inputs were issued but the tick cannot be played yet.
     pub(super) fn blocked(&mut self, now: u64) {
         let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
         self.next_at = Some(self.next_at.unwrap_or(now).max(oldest));
@@ -131,7 +131,8 @@ impl Session {
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// Catches up after this peer got a vote. The input delay is set at once, so that its first inputs arrive in time.
+    /// Catches up after this peer got a vote. The input delay is set at once, so that this peer's first inputs arrive
+    /// in time.
     pub(super) fn hurry(&mut self) {
         self.pace.hurries = true;
         self.pace.delay = self.delay_aim();

@@ -1,7 +1,7 @@
 //! Packets between peers of a match. `docs/PROTOCOL.md` has their layout.
 //!
-//! The decoder drops a packet with a wrong checksum, an unknown flag, a number in a longer form, a length beyond its
-//! bound, or bytes after its end.
+//! The decoder drops a packet with a wrong checksum, an unknown flag, a number that is not in its shortest form, a
+//! length beyond its bound, or bytes after its end.
 
 use alloc::vec::Vec;
 
@@ -73,7 +73,8 @@ pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     }
 }
 
-/// Composes a packet in the order of the methods. Parts that would not fit in [`PACKET_BYTES_MAX`] are left out.
+/// Composes a packet. Its methods must be called in the order below. Parts that would not fit in [`PACKET_BYTES_MAX`]
+/// are left out.
 pub(super) struct Composer {
     bytes: Vec<u8>,
     flags: u8,

@@ -7,7 +7,7 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of known peers. Beyond it, the one silent longest without a vote is removed.
+/// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
 pub(super) const PEERS_MAX: usize = 192;
 
 #[derive(Clone, Debug)]
@@ -19,8 +19,8 @@ pub(super) struct Remote {
     pub(super) fresh: Option<u64>,
     /// Time of the last packet from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Arrival of the newest row that states a connection of the peer to a quorum; at first, when the peer became
-    /// known.
+    /// Time at which the newest row arrived that states a connection of the peer to a quorum; at first, the time at
+    /// which the peer became known.
     pub(super) contact: u64,
     /// Whether the peer is served without a vote.
     pub(super) attached: bool,
@@ -52,7 +52,7 @@ impl Peers {
         self.list.iter_mut().find(|remote| remote.id == id)
     }
 
-    /// Adds an unknown peer. `now` counts as its last contact.
+    /// Adds an unknown peer, with `now` as its last contact. If the peer is known, only a missing key is set.
     pub(super) fn add(&mut self, id: PeerId, key: Option<Key>, now: u64) {
         if let Some(remote) = self.find_mut(id) {
             remote.key = remote.key.or(key);
@@ -102,7 +102,7 @@ impl Peers {
         (0..self.voters.len()).filter_map(|index| Some((index, self.voter(index)?)))
     }
 
-    /// Rows of voters in this view, with the index of the voter.
+    /// Rows of voters that are in view `view`, with the index of the voter.
     pub(super) fn rows(&self, view: u32) -> impl Iterator<Item = (usize, &Remote, &Row)> {
         self.voters().filter_map(move |(index, remote)| {
             let row = remote.row.as_ref().filter(|row| row.view == view)?;

@@ -1,4 +1,4 @@
-//! Playing ticks: the inputs for the game, and rollback when other inputs arrive than those played.
+//! Playing ticks: the inputs for the game, and rollback if ticks were played with inputs that turn out wrong.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -152,8 +152,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span whose input must not be issued yet. The inputs of the first `delay + 1` ticks are
-    /// issued at once, so that no peer waits for them.
+    /// First tick of one of this peer's spans whose input must not be issued yet. The inputs of the first `delay + 1`
+    /// ticks are issued at once, so that no peer waits for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
@@ -164,7 +164,7 @@ impl Session {
     }
 
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Call it while
-    /// [`is_due`](Session::is_due). Returns whether inputs were issued: if not, they may be used again.
+    /// [`is_due`](Session::is_due). Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
     /// # Errors
     /// [`InputSize`] unless there is one input for each own seat. Nothing is issued or played.
@@ -280,7 +280,7 @@ impl Session {
         self.play.played = tick.saturating_add(1);
     }
 
-    /// Notes which played ticks are final, and drops data for rollbacks before them.
+    /// Notes which played ticks are final, and drops the data for rollbacks to them.
     fn confirm(&mut self) {
         let play = &mut self.play;
         let confirmed = self.progress.fin.min(play.played);

@@ -1,9 +1,9 @@
 //! Complete, acknowledged and final ticks.
 //!
-//! A tick is *complete* when this peer has all its inputs. A tick that no peer plays is complete if one will play
-//! later. Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete tick is
-//! *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's row in
-//! this view states it as final. A change of the view may revoke complete ticks, but never final ones.
+//! A tick is *complete* when this peer has all its inputs. A tick in which no peer plays is complete if a peer will
+//! play later. Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete
+//! tick is *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's
+//! row in this view states it as final. A change of the view may revoke complete ticks, but never final ones.
 
 use alloc::vec::Vec;
 
@@ -17,9 +17,9 @@ pub(super) struct Progress {
     pub(super) complete: Tick,
     pub(super) ack: Tick,
     pub(super) fin: Tick,
-    /// Time at which `complete` last increased. At a view change it must exceed its old value.
+    /// Time at which `complete` last increased. After a view change, only an increase above the old value counts.
     pub(super) moved_at: u64,
-    /// Spans that do not end before `live_from`. Earlier ticks are not played again.
+    /// Indices of the spans with ticks from `live_from` on. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
     pub(super) live_from: Tick,
     cleaned: Tick,
@@ -102,7 +102,8 @@ impl Session {
         }
     }
 
-    /// Ticks that a quorum acknowledges in rows of this view, or that a voter's row states as final.
+    /// Number of ticks that a quorum acknowledges in rows of this view, or that a voter's row in this view states as
+    /// final.
     fn acknowledged(&self) -> Tick {
         let view = self.view.number;
         let mut acks = [(0, 0_u64); super::view::SEATS_MAX];

@@ -20,9 +20,10 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Rounds without a decision up to which the time limit grows linearly, and then quadratically.
+/// Number of rounds without a decision up to which the time limit of a ballot grows linearly. Beyond it, the limit
+/// grows quadratically.
 const ROUNDS_MAX: u64 = 4;
-/// Upper bound of the time limit of a ballot in microseconds, but at least `ROUNDS_MAX` times the initial limit.
+/// Upper bound of the time limit of a ballot in microseconds, unless `ROUNDS_MAX` times the initial limit is larger.
 const BALLOT_MAX: u64 = 6_000_000;
 
 impl Session {
@@ -52,7 +53,7 @@ impl Session {
         self.agreement.not_before = active + self.backoff();
     }
 
-    /// Time limit of a ballot, which grows with the rounds of the view without a decision.
+    /// Time limit of a ballot. It grows with each round of this view that brings no decision.
     fn ballot_time(&self) -> u64 {
         let ballot = self.config.timing.ballot.max(1);
         let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
@@ -60,8 +61,8 @@ impl Session {
         ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
-    /// Whether a voter has been out of contact for `patience`, and play has stalled as long or the voter has no seat.
-    /// `rank` adds to the time, so that voters do not start ballots together.
+    /// Whether another voter has been out of contact for `patience`, and either play has stalled for `patience` or that
+    /// voter has no seat. `rank` lengthens `patience`, so that voters do not start ballots together.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -139,7 +140,7 @@ impl Session {
         self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
     }
 
-    /// Bit for each seat that is free without the voters in `leaves` and the replaced ones.
+    /// Bit for each seat that is free once the voters in `leaves` and in `replaced` are gone.
     fn free_after(&self, leaves: u64) -> u64 {
         let leaves = leaves | self.replaced();
         let voters = self.view.voters.iter().enumerate();
@@ -166,7 +167,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Requested free seats for a joining peer: first those that its key had, then unused ones, then others.
+    /// Seats for a joining peer among the `free` ones that it requests: first those that its key had, then unused ones,
+    /// then others. `None` if there are too few.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -182,7 +184,7 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Returns whether another step may be possible.
+    /// Advances this peer's ballot by a step. Returns whether another step may be possible.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;
@@ -217,7 +219,7 @@ impl Session {
         rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
     }
 
-    /// The change that a promiser has accepted in the highest ballot. Without one, a new change.
+    /// The change that a promiser has accepted in the highest ballot. If no promiser has accepted one, a new change.
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
@@ -260,8 +262,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Ticks from the cut to the first tick of joining peers, for the round trips of promises and acceptances and the
-    /// arrival of the first inputs.
+    /// Number of ticks from the cut to the first tick of joining peers. It allows for the round trips of promises and
+    /// acceptances, and for the arrival of the first inputs.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
@@ -273,8 +275,8 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that wants to leave, is removed, or neither promised the ballot nor was in contact for
-    /// `patience`.
+    /// Bit for each voter that wants to leave or is removed, and for each that has not promised the ballot and has been
+    /// out of contact for `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;
         let number = self.view.number;

@@ -20,8 +20,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a packet. Returns its sender, or `None` if the session is closed or this is no packet of the match
-    /// from another known peer.
+    /// Processes a packet. Returns its sender; `None` if the session is closed, or if the packet is not of this match
+    /// or not from another known peer.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -80,7 +80,7 @@ impl Session {
         }
     }
 
-    /// A relayed row may belong to an unknown peer that requests a seat.
+    /// Takes a relayed row. The row may belong to an unknown peer that requests a seat.
     fn take_foreign_row(&mut self, id: PeerId, row: Row) {
         if id == self.me || self.config.has(Fault::NoRelay) {
             return;
@@ -97,7 +97,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // This does not slow down a peer that catches up: a packet carries at most 64 ticks of a span.
+        // This limit does not slow down a peer that catches up: a packet carries at most 64 ticks of a span.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;

@@ -114,7 +114,7 @@ impl TickInputs {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Keep a copy of the state before this tick. It replaces an older one.
+    /// Keep a copy of the state before this tick. It replaces an older copy for the same tick.
     Save {
         /// The tick.
         tick: Tick,

@@ -60,7 +60,7 @@ impl Routes {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
 
-    /// An address has been proven to belong to a peer.
+    /// Notes that an address has been proven to belong to a peer.
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };
         if route.address != Some(address)
@@ -79,7 +79,7 @@ impl Routes {
         }
     }
 
-    /// An address may belong to a peer.
+    /// Notes that an address may belong to a peer and should be probed.
     pub(super) fn suggest(&mut self, id: PeerId, address: Address) {
         let Some(route) = self.add(id).filter(|route| route.address != Some(address)) else { return };
         if route.candidates.iter().all(|candidate| candidate.address != address) {
@@ -107,7 +107,7 @@ impl Routes {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// Up to `most` known addresses. If there are more, calls take turns.
+    /// Up to `most` known addresses. If there are more, successive calls return different ones.
     pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
         let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
         self.turn = self.turn.wrapping_add(most);
@@ -116,7 +116,7 @@ impl Routes {
     }
 }
 
-/// The token that a peer returns from an address at which it receives packets.
+/// The token of a probe. A peer that receives packets at the address returns it.
 pub(super) fn token(secret: Secret, id: PeerId, address: &Address) -> u64 {
     let mut bytes = Vec::with_capacity(64);
     bytes.put_u32(id.0);

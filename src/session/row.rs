@@ -1,5 +1,5 @@
-//! [`Row`]: the status that a peer sends to others. The highest version counts, so that lost, duplicated and reordered
-//! packets do no harm.
+//! [`Row`]: the status that a peer sends to others. The row with the highest version counts, so that lost, duplicated
+//! and reordered packets do no harm.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -1,7 +1,7 @@
 //! Compression of the inputs of consecutive ticks: each is XORed with the one before it, then run-length encoded.
 //!
-//! A run starts with a LEB128 number: its length times two, plus one for a run of zeros. The bytes of other runs
-//! follow. The total number of bytes is known to the decoder.
+//! A run starts with a LEB128 number: its length times two, plus one for a run of zeros. In a run of other bytes, these
+//! follow the number. The decoder knows the total number of bytes.
 
 use alloc::vec::Vec;
 

@@ -105,7 +105,7 @@ pub struct Session {
 pub(super) struct Clock {
     /// The latest time passed by the caller.
     pub(super) now: u64,
-    /// Running time: at most [`Timing::step_max`](super::Timing) counts between two calls.
+    /// Running time. Of the time between two calls, at most [`Timing::step_max`](super::Timing) counts.
     pub(super) active: u64,
 }
 
@@ -143,8 +143,8 @@ impl Changes {
 }
 
 impl Session {
-    /// Creates a session from the first view of a match. The peer is one of its voters, or follows the match from the
-    /// first tick on. `me` must be random and new for each process. `seed` may be any number.
+    /// Creates a session from the first view of a match. This peer is one of the voters, or follows the match from the
+    /// first tick on without a vote. `me` must be random and new for each process. `seed` may be any number.
     ///
     /// # Errors
     /// [`ConfigError`] if a parameter is out of its range.
@@ -211,8 +211,8 @@ impl Session {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer without a vote: sends it changes and inputs. A joining peer calls this for the peers that it
-    /// knows.
+    /// Serves a peer without a vote: this peer sends it changes and inputs. A joining peer calls this for the peers
+    /// that it knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         self.peers.add(id, key, active);
@@ -272,7 +272,8 @@ impl Session {
         }
     }
 
-    /// Changes the role. A spectator starts to request seats; a player without a seat stops.
+    /// Changes the role. A spectator that becomes a player starts to request seats. A player without a seat that
+    /// becomes a spectator no longer requests any.
     pub fn set_role(&mut self, role: Role) {
         self.role = role;
     }
@@ -323,7 +324,7 @@ impl Session {
         self.me
     }
 
-    /// Number of ticks whose inputs are known. Those beyond [`final_tick`](Session::final_tick) may still change.
+    /// Number of ticks whose inputs are known. The inputs beyond [`final_tick`](Session::final_tick) may still change.
     #[must_use]
     pub fn complete_tick(&self) -> Tick {
         self.progress.complete

@@ -1,5 +1,5 @@
-//! Transfer of states in chunks. The receiver reports its chunks and the window of chunks in flight. The sender sends
-//! missing chunks, again if need be, at a rate set by congestion control.
+//! Transfer of states in chunks. The receiver reports which chunks it has and how many may be in flight. The sender
+//! sends missing chunks, again if need be, at a rate set by congestion control.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -85,7 +85,7 @@ impl Upload {
         self.next = next;
         self.window = window.min(WINDOW_MAX);
         self.cursor = next;
-        // The highest chunk since the previous request measures the round trip, if it was sent once.
+        // The highest chunk that arrived since the previous request measures the round trip, if it was sent only once.
         let end = next.saturating_add(self.window);
         let newest =
             (first..end).rev().find(|&index| self.has(index) && !in_masks(&masks_before, first, index));

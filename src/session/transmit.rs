@@ -1,4 +1,4 @@
-//! Outgoing packets: this peer's row, and changes, inputs and rows of others that the receiver lacks.
+//! Outgoing packets: this peer's row, and the changes, inputs and foreign rows that the receiver lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -24,9 +24,10 @@ pub(super) struct Outbox {
 const PACKETS_MAX: usize = 4096;
 /// Time for which a peer without a vote is served after its last packet, in microseconds.
 const SERVED: u64 = 5_000_000;
-/// If a receiver lacks more ticks of a peer than this, others relay them even if it hears that peer.
+/// If a receiver lacks more than this number of a peer's inputs, others relay them even if the receiver hears that
+/// peer.
 const HELP_TICKS: Tick = 20;
-/// Interval, in row versions, at which a peer without a vote or a quorum sends to all peers that it knows.
+/// Interval, in row versions, at which a peer that has no vote or hears no quorum sends to all peers that it knows.
 const TRY_ROWS: u32 = 8;
 /// Upper bound of [`Session::send_interval`] with up to 16 peers, in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
@@ -44,7 +45,7 @@ impl Session {
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
     }
 
-    /// Updates the fields that the agreement reads.
+    /// Updates those fields of this peer's row that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -118,7 +119,8 @@ impl Session {
         }
     }
 
-    /// Whether packets are sent to a peer. Without a vote or a quorum, this peer occasionally tries all that it knows.
+    /// Whether packets are sent to a peer. If this peer has no vote or hears no quorum, it occasionally sends to all
+    /// peers that it knows.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());
@@ -162,14 +164,15 @@ impl Session {
         self.outbox.packets.push_back((id, bytes));
     }
 
-    /// Whether `receiver` states that it hears another peer. Its bits of voters count if its row is in this view.
+    /// Whether the row of `receiver` states that it hears `other`. The bits for voters count only if that row is in
+    /// this view.
     fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
         let Some(row) = receiver.row.as_ref() else { return false };
         let as_voter = self.view.voter(other).filter(|_| row.view == self.view.number);
         as_voter.is_some_and(|index| has_bit(row.hears, index)) || row.hears_others.contains(&other)
     }
 
-    /// First tick of a span whose input a peer lacks.
+    /// First tick of a span whose input the receiver lacks.
     fn lacks(&self, receiver: &Remote, index: usize) -> Tick {
         let Some(span) = self.view.spans.get(index) else { return 0 };
         let Some(row) = receiver.row.as_ref() else { return span.from };
@@ -182,8 +185,8 @@ impl Session {
         }
     }
 
-    /// The oldest inputs of a span that the receiver lacks. Inputs of others are relayed if the receiver does not hear
-    /// them or lacks many ticks.
+    /// The oldest inputs of a span that the receiver lacks: span, first tick, inputs. Inputs of another peer are
+    /// relayed if the receiver does not hear that peer or lacks many of its inputs.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);
@@ -199,7 +202,8 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of voters, and of peers that request seats, that the receiver does not hear, in changing order.
+    /// Rows of voters and of peers that request seats, if the receiver does not hear them. Their order changes with
+    /// each row version.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

@@ -128,7 +128,7 @@ impl View {
         view
     }
 
-    /// Adds a voter to a view that is not in use yet, with those of the given seats that are free.
+    /// Adds a voter to a view that is not in use yet. The voter gets those of the given seats that are free.
     pub fn found(&mut self, id: PeerId, key: Key, weight: u8, seats: u64) {
         self.voters.push(Voter { id, key, weight });
         let seats = seats & self.free_seats();
@@ -224,7 +224,7 @@ impl View {
     }
 }
 
-/// The set of one index; empty for an index above 63.
+/// The set that contains one index; empty for an index above 63.
 pub(super) const fn bit(index: usize) -> u64 {
     if index < 64 { 1 << index } else { 0 }
 }

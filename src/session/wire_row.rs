@@ -119,7 +119,7 @@ impl Row {
     }
 }
 
-/// Reads the length of a list that is not empty: an empty one has no flag.
+/// Reads the length of a list whose flag is set. The length is not 0, because an empty list has no flag.
 fn read_positive(reader: &mut Reader, max: usize) -> Decoded<usize> {
     match reader.count(max)? {
         0 => Err(Malformed),

@@ -137,7 +137,7 @@ impl<'a, T: Plain> Out<'a, T> {
         self.0.is_null()
     }
 
-    /// Checks the pointer, before an operation whose result would be lost.
+    /// Checks the pointer before an operation whose result would otherwise be lost.
     pub(crate) fn check(&self) -> Outcome {
         check(self.0)
     }
@@ -154,7 +154,7 @@ impl<'a, T: Plain> Out<'a, T> {
         if self.0.is_null() { Ok(()) } else { self.set(value) }
     }
 
-    /// Writes the number of items to `count`, and the items if there are at most `capacity`, otherwise
+    /// Writes the number of items to `count`. Writes the items if there are at most `capacity`; otherwise the result is
     /// [`Status::Buffer`].
     pub(crate) fn set_all(&mut self, capacity: usize, count: &mut Out<'_, usize>, items: &[T]) -> Outcome {
         count.set(items.len())?;

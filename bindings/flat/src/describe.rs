@@ -33,7 +33,7 @@ pub(crate) struct Field {
 pub(crate) struct Struct {
     pub(crate) name: &'static str,
     pub(crate) bytes: usize,
-    /// Without gaps.
+    /// Fields in order, without gaps.
     pub(crate) fields: &'static [Field],
     pub(crate) docs: &'static [&'static str],
 }

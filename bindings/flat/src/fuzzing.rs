@@ -15,8 +15,8 @@ const BYTES: usize = 4096;
 /// Number of objects and of ids that a caller remembers.
 const REMEMBERED: usize = 12;
 
-/// Parameters that are handles. Outputs are mostly passed to parameters of the same name. `copy` is a world, and the
-/// outputs `rules` and `name` are bytes.
+/// Names of parameters that are handles. A handle from an output is mostly passed to parameters with the name of that
+/// output. The output `copy` counts as `world`, and the outputs `rules` and `name` count as `bytes`.
 const HANDLES: [&str; 11] = [
     "world",
     "target",

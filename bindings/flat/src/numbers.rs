@@ -13,12 +13,12 @@ aliases! {
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// A body of a world. The lowest 21 bits are its slot, the others count earlier bodies in that slot. Less than
-    /// 2^53, so that a JavaScript number is exact, except for `LS2D_NO_ID`.
+    /// Handle of a body of a world. The lowest 21 bits are the slot, the others count earlier bodies in that slot. A
+    /// handle is less than 2^53, so that a JavaScript number holds it exactly. Only `LS2D_NO_ID` is larger.
     RawBody(u64) = "ls2d_body";
-    /// A shape of a world, encoded like a body.
+    /// Handle of a shape of a world, encoded like that of a body.
     RawShape(u64) = "ls2d_shape";
-    /// A joint of a world, encoded like a body.
+    /// Handle of a joint of a world, encoded like that of a body.
     RawJoint(u64) = "ls2d_joint";
 }
 
@@ -41,9 +41,9 @@ records! {
 
     /// A random number generator, to be kept in the state of a game.
     struct RawRng = "ls2d_rng" {
-        /// Its state.
+        /// State of the generator.
         state: u64,
-        /// Its stream, an odd number.
+        /// Stream of the generator, an odd number.
         increment: u64,
     }
 }
@@ -115,7 +115,7 @@ fn pack(index: u32, generation: u32) -> u64 {
     u64::from(generation) << SLOT_BITS | u64::from(index)
 }
 
-/// The canonical bytes of a handle.
+/// The canonical bytes of a handle; `None` for a number that is no handle.
 fn unpack(packed: u64) -> Option<[u8; 8]> {
     let index = u32::try_from(packed & ((1 << SLOT_BITS) - 1)).ok()?;
     let generation = u32::try_from(packed >> SLOT_BITS).ok()?;

@@ -48,7 +48,7 @@ statuses! {
     Number = 10, "LS2D_NUMBER";
     /// An error in the library. The objects of the call are unusable.
     Internal = 11, "LS2D_INTERNAL";
-    /// `LS2D_INTERNAL` has left the object unusable. It can be freed.
+    /// An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed.
     Broken = 12, "LS2D_BROKEN";
     /// There are too many objects.
     Exhausted = 13, "LS2D_EXHAUSTED";

@@ -90,7 +90,7 @@ struct Table {
 
 static TABLE: Mutex<Table> = Mutex::new(Table { slots: Vec::new(), free: Vec::new() });
 
-/// Code that runs while the table is locked must not panic.
+/// Locks the table. Code that runs while the table is locked must not panic.
 fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -191,7 +191,7 @@ fn remove(handle: u32) -> Outcome<Shared> {
     Ok(object)
 }
 
-/// A call that uses the object on another thread frees its memory.
+/// Frees an object. If a call on another thread still uses the object, that call frees the memory at its end.
 pub(crate) fn free(handle: u32) -> Outcome {
     // Dropped after the table is unlocked.
     remove(handle).map(drop)

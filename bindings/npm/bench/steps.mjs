@@ -3,7 +3,7 @@
 //     npm ci && node steps.mjs             this package, rapier2d, planck, matter-js
 //     node steps.mjs A.wasm B.wasm ...     builds of the module
 //
-// In each round, every engine or build runs in a new process. The time of a tick is its shortest one over the rounds,
+// In each round, every engine or build runs in a new process. For each tick, the shortest time over the rounds counts,
 // because load on the machine makes ticks longer. Figures are means over the ticks, with their ratio to the first
 // column. ROUNDS is 5 by default. Hashes have to be equal.
 import { execFileSync } from "node:child_process";

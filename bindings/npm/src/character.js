@@ -66,7 +66,7 @@ export function encodeMoverState(state) {
     return copy(at, sizeOf("mover_state"));
 }
 
-/** `moveCharacter` checks the state. */
+/** Decodes the state of a character. `moveCharacter` checks its values. */
 export function decodeMoverState(bytes) {
     if (byteArray(bytes, "the argument").length !== sizeOf("mover_state")) {
         throw new Lockstep2dError("DECODE", `the state of a character has ${sizeOf("mover_state")} bytes, and not ${bytes.length}`);

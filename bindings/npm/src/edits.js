@@ -9,7 +9,7 @@ const SETTINGS = ["linearDamping", "angularDamping", "gravityScale", "sleepSpeed
 const raws = (vector, what) => vectorOf(vector, what);
 
 export class Edits extends Handle {
-    /** A list of commands returns undefined. */
+    /** Returns the handle; undefined for a list of commands. */
     spawn(options) {
         const { id: at, body, shapes, count } = writeBodyAndShapes(options);
         putRaw(at, -1n);
@@ -17,7 +17,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** A list of commands returns undefined. */
+    /** Returns the handles; undefined for a list of commands. */
     spawnEach(options, poses) {
         array(poses, "poses");
         const size = sizeOf("pose");
@@ -92,7 +92,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** A list of commands returns undefined. */
+    /** Returns the handles; undefined for a list of commands. */
     addJointEach(options, pairs) {
         array(pairs, "pairs");
         const size = sizeOf("joint_def");

@@ -221,7 +221,7 @@ export class Angle {
     }
 }
 
-/** Above minus one half turn and up to plus one half turn. */
+/** An angle as a number above minus one half turn and up to plus one half turn. */
 const signed = (bits) => (bits === 0x80000000 ? BigInt(bits) : BigInt.asIntN(32, BigInt(bits)));
 
 const angleOf = (raw) => new Angle(Number(BigInt.asUintN(32, raw)));
@@ -250,7 +250,7 @@ export function bitsOf(value, what = "an angle") {
     throw new Lockstep2dError("VALUE", `${what} is degrees(45), radians("0.5"), turns("0.25") or 0, and not ${shown(value)}`);
 }
 
-/** The argument is `[x, y]` or `{ x, y }`. */
+/** The raw components of a vector, which is `[x, y]` or `{ x, y }`. */
 export function vectorOf(value, what = "a vector") {
     if (Array.isArray(value) && value.length === 2) {
         return [rawOf(value[0], what), rawOf(value[1], what)];

@@ -6,7 +6,7 @@ import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
 
 export const NO_ID = 0xffffffffffffffffn;
 const NAMES = Object.fromEntries(Object.entries(STATUS).map(([name, code]) => [code, name]));
-// Valid only if the machine supports SIMD: i8x16.popcnt of a splat.
+// A module that is valid only if the machine supports SIMD: i8x16.popcnt of a splat.
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 const DECODER = new TextDecoder();
 const ENCODER = new TextEncoder();
@@ -50,7 +50,7 @@ async function load(modules, { simd, wasm }) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** Makes `init` for two inlined modules. Calls after a successful one change nothing. */
+/** Makes `init` for two inlined modules. Once `init` has succeeded, further calls of it change nothing. */
 export const initializer = (modules) => (options) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;
@@ -118,7 +118,7 @@ export function statusOf(name, ...given) {
     return status;
 }
 
-/** Returns whether there was something to return. Failures are thrown. */
+/** Calls a function, and returns whether there was something to return. Failures are thrown. */
 export function call(name, ...given) {
     const status = statusOf(name, ...given);
     if (status > STATUS.NONE) {

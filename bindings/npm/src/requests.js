@@ -3,7 +3,7 @@ import { call, copy, read, scratch, sizeOf, u32 } from "./library.js";
 
 const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
 
-/** `inputBytes` is the number of bytes of the inputs of a tick. */
+/** The next request, or undefined. `inputBytes` is the number of bytes of the inputs of a tick. */
 export function nextRequest(name, handle, inputBytes) {
     const size = sizeOf("request");
     const at = scratch(8 + size + inputBytes);

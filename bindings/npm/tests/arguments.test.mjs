@@ -1,4 +1,4 @@
-// Wrong arguments are errors with a code that name the argument. WebAssembly would convert them to integers.
+// Wrong arguments give errors with a code and the name of the argument. WebAssembly would convert them to integers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";

@@ -8,7 +8,7 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::Rng;
 use serde::{Deserialize, Serialize};
 
-/// The mistake.
+/// The mistake: a map with a random iteration order.
 #[expect(clippy::disallowed_types, reason = "the planted mistake that fuzzing has to find")]
 type Fruit = std::collections::HashMap<(i16, i16), u32>;
 

@@ -1,7 +1,7 @@
 //! [`Costs`]: work units of the commands of a tick or of a setup.
 //!
-//! All commands of a tick are charged before the first one is executed, and may refer to objects that earlier ones add.
-//! Objects added in the tick therefore count as existing.
+//! All commands of a tick are charged before the first one is executed, but a command may refer to objects that an
+//! earlier one adds. Objects added in the tick therefore count as existing.
 
 use crate::body::{BodyId, BodyKind};
 use crate::solver::SolverSettings;
@@ -27,7 +27,7 @@ impl<'a> Costs<'a> {
         Costs { world, added: AddedWork::default(), grown: 0, rounds }
     }
 
-    /// Counts what a command of the tick adds, and raises `rounds` for its settings.
+    /// Counts the objects that a command of the tick adds. Raises `rounds` if the command sets larger solver settings.
     pub(super) fn add(&mut self, command: &Command) {
         self.added.bodies = self.added.bodies.saturating_add(bodies_added(command));
         self.added.shapes = self.added.shapes.saturating_add(shapes_added(command));
@@ -42,7 +42,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Work units of a command. Many visit the shapes of their body. A removal visits all pairs and joints.
+    /// Work units of a command. Many commands visit the shapes of their body. A removal visits all pairs and joints.
     pub(super) fn command(&self, command: &Command) -> u64 {
         match command {
             Command::Spawn { .. } | Command::SpawnEach { .. } => {
@@ -111,7 +111,7 @@ impl<'a> Costs<'a> {
         bodies.saturating_add(self.shapes()).saturating_add(self.removal())
     }
 
-    /// A body added in this tick may have all shapes added in it.
+    /// Work units of visiting the shapes of a body. A body added in this tick may have all shapes added in this tick.
     fn shapes_of(&self, body: BodyId) -> u64 {
         let shapes = match self.world.body(body) {
             Some(body) => count(body.shapes().len()).saturating_add(self.grown),
@@ -127,7 +127,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// After a change of a joint, the shapes of its bodies are compared again.
+    /// Work units of comparing the shapes of two bodies again after a change of their joint.
     fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
         bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
     }

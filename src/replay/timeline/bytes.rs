@@ -59,7 +59,7 @@ pub enum KeyframesError {
         /// The version found.
         version: u32,
     },
-    /// The keyframes belong to another replay, or its bytes have changed.
+    /// The keyframes belong to another replay, or the bytes of the replay have changed.
     OtherReplay,
     /// The number of bytes differs from the header.
     Length {

@@ -45,8 +45,8 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineOptions {
-    /// Ticks between keyframes, at least 1. More than a block of the replay is rounded down to whole blocks, whose
-    /// checkpoints are compared with keyframes.
+    /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
+    /// blocks, so that keyframes can be compared with checkpoints.
     pub interval: u32,
     /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of that in
     /// addition.
@@ -86,8 +86,8 @@ pub enum SeekError {
     /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a limit, or lead to
     /// another state.
     Replay(Verdict),
-    /// The state of a keyframe does not match the replay. It comes from a wrong file, or saving and loading this game
-    /// loses state.
+    /// The state of a keyframe does not match the replay. The keyframe comes from a wrong file, or saving and loading
+    /// this game loses state.
     Keyframe {
         /// Tick of the keyframe.
         tick: u64,
@@ -201,7 +201,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.simulated
     }
 
-    /// Ticks between keyframes, which grow when the keyframes exceed their memory budget.
+    /// Number of ticks between keyframes. It grows when the keyframes exceed their memory budget.
     #[must_use]
     pub fn interval(&self) -> u64 {
         self.keyframes.interval()
@@ -235,7 +235,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         Ok(())
     }
 
-    /// Advances by one tick, by simulation: contacts and other results that are not state are available.
+    /// Advances by one tick. The tick is always simulated, so contacts and other results outside of the state are
+    /// available.
     ///
     /// # Errors
     /// As [`Timeline::seek`]. At the end the result is [`Step::Ended`].
@@ -266,7 +267,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     pub fn play_all(&mut self) -> Result<(), SeekError> {
         let here = self.tick();
         self.seek(self.played)?;
-        // `seek` would skip ticks by keyframes from a file.
+        // `seek` would skip ticks if there are keyframes from a file.
         while self.tick() < self.ticks() {
             self.play_tick()?;
         }
@@ -279,10 +280,10 @@ impl<'a, G: Game> Timeline<'a, G> {
         bytes::encode::<G>(self.file, &self.keyframes)
     }
 
-    /// Replaces the keyframes by those of [`Timeline::keyframes_to_bytes`].
+    /// Replaces the keyframes by those of a file from [`Timeline::keyframes_to_bytes`].
     ///
-    /// The interval becomes a multiple of the file's. The state of a keyframe has to match the replay's checkpoint when
-    /// it is used. This does not verify that the inputs lead to these states: see [`Timeline::played`].
+    /// The interval becomes a multiple of the interval in the file. When a keyframe is used, its state has to match the
+    /// replay's checkpoint. This does not verify that the inputs lead to that state: see [`Timeline::played`].
     ///
     /// # Errors
     /// [`KeyframesError`] for other bytes, and for keyframes of another replay. The current keyframes are unchanged.
@@ -306,7 +307,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Restores the latest saved state up to `tick`, unless the current tick lies in between.
+    /// Restores the latest saved state up to `tick`, unless the current tick lies between that state and `tick`.
     fn go_to_latest_before(&mut self, tick: u64) -> Result<(), SeekError> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
@@ -337,8 +338,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         Err(SeekError::Keyframe { tick, why: "its state does not match the replay's checkpoint".into() })
     }
 
-    /// Saves the current state for steps backwards: in every tick, or less often if an interval would exceed a quarter
-    /// of the memory for keyframes.
+    /// Saves the current state for steps backwards: in every tick, or less often if the saves of an interval would
+    /// exceed a quarter of the memory for keyframes.
     fn leave_trail(&mut self) {
         let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);

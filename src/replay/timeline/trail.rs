@@ -19,8 +19,8 @@ impl<'a, S> Trail<'a, S> {
         self.saves.range(..=tick).next_back().map(|(_, kept)| kept)
     }
 
-    /// Inserts a save, and removes others down to `length`: those of later ticks from the latest on, which further
-    /// steps backwards do not need, then the earliest.
+    /// Inserts a save. If there are more than `length`, removes others: first those of later ticks from the latest on,
+    /// because further steps backwards do not need them, then the earliest.
     pub(super) fn keep(&mut self, position: ReplayPosition<'a>, save: S, length: u64) {
         let tick = position.tick;
         self.saves.insert(tick, (position, save));

@@ -26,7 +26,7 @@ api! {
         def.set(RawBodyDef::of(&BodyDef::new(body_kind(kind)?)))
     }
 
-    /// Sets the defaults of a shape of the given kind. Its geometry has to be set.
+    /// Sets the defaults of a shape of the given kind. The caller sets the geometry.
     fn ls2d_shape_def_init(kind: u32, def: Out<'_, RawShapeDef>) {
         let mut def = def;
         let mut raw = RawShapeDef::of(&ShapeDef::new(Geometry::Circle { radius: Fx::ZERO }));
@@ -34,7 +34,7 @@ api! {
         def.set(raw)
     }
 
-    /// Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID`.
+    /// Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID` at first.
     fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
         let mut def = def;
         def.set(RawJointDef::of_kind(kind)?)

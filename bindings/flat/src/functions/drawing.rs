@@ -29,7 +29,7 @@ fn float(value: Fx) -> f64 {
     value.to_bits() as f64 * UNIT
 }
 
-/// Exact, because a handle has at most 53 bits.
+/// A handle as a float, exactly, because a handle has at most 53 bits.
 #[expect(clippy::cast_precision_loss, reason = "at most 53 bits")]
 fn number(id: RawBody) -> f64 {
     id.0 as f64

@@ -88,8 +88,8 @@ api! {
         })
     }
 
-    /// Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`
-    /// unless it is null.
+    /// Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`,
+    /// unless that pointer is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
         with_two(world, commands, |world: &mut World, Commands(list)| {
@@ -98,7 +98,7 @@ api! {
         })
     }
 
-    /// Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list.
+    /// Adds a body with its shapes. The body's handle is written, unless the pointer is null or the target is a list.
     fn ls2d_spawn(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -114,9 +114,9 @@ api! {
         }
     }
 
-    /// Adds a body with one definition at each pose, or none if one is refused. A recording stores the definition once.
-    /// Bodies and flags of the poses are not read. The handles are written, unless the pointer is null or the target is
-    /// a list.
+    /// Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
+    /// definition once. The fields `body` and `flags` of the poses are not read. The handles are written, unless the
+    /// pointer is null or the target is a list.
     fn ls2d_spawn_each(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -141,7 +141,7 @@ api! {
     /// Removes a body with its shapes and joints.
     fn ls2d_despawn(target: u32, body: RawBody) { body_commands!(target, body, Despawn) }
 
-    /// Adds a shape to a body. Its handle is written, unless the pointer is null or the target is a list.
+    /// Adds a shape to a body. The shape's handle is written, unless the pointer is null or the target is a list.
     fn ls2d_add_shape(target: u32, body: RawBody, shape: In<'_, RawShapeDef>, id: Out<'_, RawShape>) {
         let mut id = id;
         match edit(target, Command::AddShape { body: body.id()?, shape: shape.get()?.def()? })? {
@@ -169,9 +169,9 @@ api! {
         }
     }
 
-    /// Adds a joint with one definition between each pair of bodies, or none if one is refused. A recording stores the
-    /// definition once. `ends` has the two bodies of each joint in turn. The handles are written, unless the pointer is
-    /// null or the target is a list.
+    /// Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. A
+    /// recording stores the definition once. `ends` has the two bodies of each joint in turn. The handles are written,
+    /// unless the pointer is null or the target is a list.
     fn ls2d_add_joint_each(
         target: u32,
         joint: In<'_, RawJointDef>,

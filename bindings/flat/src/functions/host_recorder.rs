@@ -122,8 +122,9 @@ pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) ->
 }
 
 api! {
-    /// Starts a recorder for a game with its own rules. `rules` is their name in UTF-8, `setup` the data from which the
-    /// game makes its first state, and `start` the hash of that state. There is a checkpoint every `interval` ticks.
+    /// Starts a recorder for a game with its own rules. `rules` is the name of the rules in UTF-8, `setup` the data
+    /// from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
+    /// `interval` ticks.
     fn ls2d_recorder_new(
         rules: In<'_, u8>,
         rules_length: usize,
@@ -170,7 +171,7 @@ api! {
         })
     }
 
-    /// Passes the hash of the state after the last recorded tick. It has no effect if no checkpoint is due.
+    /// Passes the hash of the state after the last recorded tick. The call has no effect if no checkpoint is due.
     fn ls2d_recorder_checkpoint(recorder: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
         with(recorder, |recorder: &mut HostRecorder| {
@@ -188,7 +189,7 @@ api! {
     }
 
     /// Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
-    /// 256 results with different names, which can be read without playing it.
+    /// 256 results with different names. They can be read without playing the replay.
     fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(recorder, |recorder: &mut HostRecorder| {

@@ -132,7 +132,7 @@ impl HostReplay {
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
         self.compared = Some(tick);
         if checkpoint_hash(hash, inputs) == stored {
-            // A skipped checkpoint has not been compared.
+            // Checkpoints after a skipped one do not count, because the skipped one has not been compared.
             self.equal += usize::from(index == self.equal);
             return Ok(());
         }
@@ -247,8 +247,8 @@ api! {
         bytes.set(table::add(Bytes(setup))?)
     }
 
-    /// Name, as bytes, and number of a result that the file states, in ascending order of names. The results are true
-    /// if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
+    /// Name (a bytes object) and number of a result that the file states. Results are in ascending order of names. They
+    /// are true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
     fn ls2d_replay_claim_at(replay: u32, index: u32, name: Out<'_, u32>, number: Out<'_, i64>) {
         let (mut name, mut number) = (name, number);
         name.check()?;
@@ -289,7 +289,7 @@ api! {
         with(replay, |replay: &mut HostReplay| replay.check(hash))
     }
 
-    /// Adds a result of the game that was played, to be compared with those in the file by the verdict.
+    /// Adds a result of the game that was played. `ls2d_replay_verdict` compares the results with those in the file.
     fn ls2d_replay_claim(replay: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(replay, |replay: &mut HostReplay| claim(&mut replay.claims, name, number))

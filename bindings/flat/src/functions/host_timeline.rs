@@ -35,7 +35,7 @@ impl HostReplay {
         request(kind, self.tick, self.run().map_or(0, |run| run.absent))
     }
 
-    /// Updates the position. A checksum is requested until it is answered.
+    /// Updates the position after a request. A checksum request changes nothing, and is repeated until it is answered.
     fn fulfil(&mut self, request: RawRequest) {
         match request.kind {
             REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
@@ -54,7 +54,7 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 
 api! {
     /// Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
-    /// returns requests. At the first one the game has to be in its first state.
+    /// returns requests. Before the first request, the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {

@@ -58,7 +58,8 @@ api! {
     }
 
     /// Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
-    /// cannot allocate memory. Each thread has one such buffer. A larger size may move it and keeps its contents.
+    /// cannot allocate memory. Each thread has one such buffer. A call with a larger size may move the buffer, but
+    /// keeps its contents.
     fn ls2d_scratch(size: usize) -> usize {
         SCRATCH.with_borrow_mut(|scratch| {
             let words = size.div_ceil(size_of::<u64>()).max(1);

@@ -108,7 +108,7 @@ fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
 
 api! {
     /// Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
-    /// start with two taken seats or the only one. The caller sets `peer`, `key` and `secret` to random numbers.
+    /// start once two seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers.
     fn ls2d_match_config_init(seats: u32, config: Out<'_, RawMatchConfig>) {
         let mut config = config;
         let number = u8::try_from(seats).map_err(|_| value("the number of seats", seats))?;
@@ -148,7 +148,7 @@ api! {
         handle.set(table::add(Match::new(Endpoint::join(config, identity, role, contact)?))?)
     }
 
-    /// Sends the request to join to this participant.
+    /// Sends the request to join to the participant at the address `contact`.
     fn ls2d_match_ask(handle: u32, contact: In<'_, u8>, contact_size: usize) {
         let contact = address(&contact, contact_size)?;
         with(handle, |game: &mut Match| {
@@ -292,8 +292,8 @@ api! {
         })
     }
 
-    /// Numbers of ticks: `played` in all, `last` with final inputs, `confirmed` played with final inputs. Null pointers
-    /// are not written.
+    /// Numbers of ticks: `played` is the number of ticks played, `last` of ticks with final inputs, `confirmed` of
+    /// ticks played with final inputs. Null pointers are not written.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
@@ -354,8 +354,8 @@ api! {
         })
     }
 
-    /// Requests an end of the match after a number of ticks, sent two seconds before. Until a majority has decided,
-    /// other peers can get seats.
+    /// Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
+    /// has decided, other peers can get seats.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);

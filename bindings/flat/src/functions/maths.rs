@@ -123,8 +123,8 @@ api! {
         rng.set(described(&Rng::new(seed))?)
     }
 
-    /// Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` after
-    /// it, possibly the same struct.
+    /// Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` the
+    /// generator after it. Both may be the same struct.
     fn ls2d_rng_below(from: In<'_, RawRng>, rng: Out<'_, RawRng>, bound: u32, number: Out<'_, u32>) {
         let (mut rng, mut number) = (rng, number);
         let mut drawn = generator(from.get()?)?;
@@ -133,7 +133,7 @@ api! {
     }
 
     /// Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
-    /// the draw, `rng` after it, possibly the same struct.
+    /// the draw, `rng` the generator after it. Both may be the same struct.
     fn ls2d_rng_range(
         from: In<'_, RawRng>,
         rng: Out<'_, RawRng>,

@@ -50,7 +50,7 @@ pub use world::*;
 
 use crate::describe::Function;
 
-/// In the order of the header.
+/// Functions by subject, in the order of the header.
 pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("The library", library::FUNCTIONS),
     ("Worlds", world::FUNCTIONS),

@@ -1,4 +1,4 @@
-//! Recording and verification of worlds that commands alone change.
+//! Recording and verification of worlds whose only inputs are commands.
 
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::replay::{self, Limits, Mismatch, Recording, Verdict};
@@ -11,7 +11,7 @@ use crate::records::{RawConfig, RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, Commands, Kind, with, with_two};
 
-/// `None` once it is finished.
+/// A recording of a world; `None` once it is finished.
 pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
 
 impl SandboxRecorder {
@@ -24,7 +24,7 @@ pub(super) fn finished() -> Failure {
     Failure::new(Status::Record, "the recording is finished")
 }
 
-/// A null pointer stands for the default limits.
+/// Reads limits. A null pointer stands for the default limits.
 pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
     if limits.is_null() { Ok(Limits::default()) } else { limits.get()?.limits() }
 }

@@ -29,7 +29,7 @@ fn failed(error: &SeekError) -> Failure {
     Failure::new(status, error.to_string())
 }
 
-/// Fails with `LS2D_NONE` if there is no further tick.
+/// Moves a timeline by calling `by`. Fails with `LS2D_NONE` if there is no further tick.
 fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekError>) -> Outcome {
     with(timeline, |timeline: &mut SandboxTimeline| {
         match timeline.with_dependent_mut(|_, timeline| by(timeline)) {
@@ -70,7 +70,8 @@ api! {
         })
     }
 
-    /// Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays there.
+    /// Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays at that
+    /// tick.
     fn ls2d_timeline_seek(timeline: u32, tick: u64) {
         go(timeline, |timeline| timeline.seek(tick).map(|()| Step::Ticked))
     }

@@ -155,7 +155,7 @@ records! {
         falloff: RawFx,
         /// Impulse in N s per metre of the width of a shape, as seen from the centre.
         impulse: RawFx,
-        /// Categories of shapes that it acts on.
+        /// Categories of shapes that the explosion acts on.
         mask: u64,
     }
 }
@@ -194,7 +194,7 @@ fn settings_flags(settings: &BodySettings) -> u32 {
         | flag(settings.may_sleep, BODY_MAY_SLEEP)
 }
 
-/// A name ends before the first zero byte.
+/// Reads a name, which ends before the first zero byte. `None` for an empty name.
 pub(crate) fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
     let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     if text.is_empty() {

@@ -24,11 +24,11 @@ records! {
         size: u32,
         /// Steepest slope that counts as ground, measured from the horizontal.
         slope_max: RawAngle,
-        /// Height in metres of steps that it climbs without a jump.
+        /// Height in metres of steps that the character climbs without a jump.
         step_height: RawFx,
         /// Distance in metres by which ground may descend within a tick while the character follows it.
         snap_distance: RawFx,
-        /// Its geometry; other fields of the definition have no effect.
+        /// Geometry of the character; other fields of the definition have no effect.
         shape: RawShapeDef,
     }
 
@@ -36,7 +36,7 @@ records! {
     struct RawMoverPlane = "ls2d_mover_plane" {
         /// The shape that the character has met.
         shape: RawShape,
-        /// Its body.
+        /// Body of that shape.
         body: RawBody,
         /// Position of the body's origin at that time, in metres.
         body_position: RawVec2,
@@ -60,9 +60,9 @@ records! {
         size: u32,
         /// `LS2D_MOVER_` flags.
         flags: u32,
-        /// Position of its geometry's centre in the world, in metres.
+        /// Position of the centre of the character's geometry in the world, in metres.
         position: RawVec2,
-        /// Velocity in m/s: relative to the ground while it stands on ground, otherwise in the world.
+        /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world.
         velocity: RawVec2,
         /// The ground, with `LS2D_MOVER_ON_GROUND`; otherwise zeros.
         ground: RawMoverPlane,

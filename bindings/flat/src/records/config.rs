@@ -50,7 +50,7 @@ records! {
         restitution_threshold: RawFx,
         /// Largest speed of a body in m/s.
         speed_max: RawFx,
-        /// Distance in metres at which shapes get contact points, more if they approach each other.
+        /// Distance in metres within which shapes get contact points. It is larger for shapes that approach each other.
         speculative_distance: RawFx,
         /// Largest margin in metres of the bounding boxes in the broad phase.
         fat_margin: RawFx,

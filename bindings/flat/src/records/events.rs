@@ -42,7 +42,7 @@ records! {
 
     /// A joint whose force or torque exceeded its threshold.
     struct RawJointEvent = "ls2d_joint_event" {
-        /// The joint. Its handle is stale if it broke.
+        /// The joint. The handle is stale if the joint broke.
         joint: RawJoint,
         /// Force on body B in N.
         force: RawVec2,

@@ -61,8 +61,8 @@ constants! {
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named by a flag is read only with that
-    /// flag, except that a pulley reads `length`.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
+    /// only with that flag, except that a pulley reads `length`.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,

@@ -146,7 +146,7 @@ impl RawJointDef {
         [self.if_has(JOINT_LINEAR_SPRING, linear), self.if_has(JOINT_ANGULAR_SPRING, angular)]
     }
 
-    /// Flags of the kind.
+    /// Flags that the kind allows.
     fn allowed(&self) -> Outcome<u32> {
         Ok(COMMON
             | match self.kind {

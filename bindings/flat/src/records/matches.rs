@@ -43,7 +43,7 @@ constants! {
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
     /// Event: `peer` loses `seat` at `tick`.
     EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
-    /// Event: play stalls for inputs of `peer`. `value` is 1 if it is heard, also through other peers.
+    /// Event: play stalls for inputs of `peer`. `value` is 1 if that peer is heard, directly or through others.
     EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
     /// Event: play continues.
     EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
@@ -55,12 +55,12 @@ constants! {
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
     /// Event: `peer` has issued two different inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the other peers do not keep the inputs that this peer lacks. It has to join again.
+    /// Event: the other peers may have dropped inputs that this peer lacks. This peer has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
     /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
     /// Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
-    /// Restore it before the next request.
+    /// Restore that state before the next request.
     EVENT_STATE = 12, "LS2D_EVENT_STATE";
     /// Event: the downloaded bytes are not a valid state; they are requested again.
     EVENT_BAD_STATE = 13, "LS2D_EVENT_BAD_STATE";
@@ -176,7 +176,7 @@ records! {
         match_tag: u64,
         /// Time in microseconds for which play stalls for a missing peer before the others go on.
         patience: u64,
-        /// Identity of the player: a peer that joins with the same key gets its seat back.
+        /// Identity of the player: a peer that joins with the same key gets its seat back, if that is free.
         key: u64,
         /// Secret random numbers, against packets with forged addresses.
         secret: [u64; 2],
@@ -204,7 +204,7 @@ records! {
         seat: u32,
         /// The tick that the event names.
         tick: u32,
-        /// Its meaning depends on the kind.
+        /// A value whose meaning depends on the kind.
         value: u32,
         /// Reserved: 0.
         reserved: u32,

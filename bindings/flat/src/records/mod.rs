@@ -1,6 +1,7 @@
 //! Structs that callers fill or receive, and their conversions.
 //!
-//! The size at their beginning detects programs that were compiled with another version of the header.
+//! Structs that callers fill begin with their size. The size detects programs that were compiled with another version
+//! of the header.
 
 mod body;
 mod character;
@@ -36,7 +37,7 @@ pub(crate) const CONSTANTS: &[&[Constant]] = &[
     shape::CONSTANTS,
 ];
 
-/// No struct uses a later one.
+/// All structs, in an order in which no struct uses a later one.
 pub(crate) const STRUCTS: &[&[Struct]] = &[
     crate::numbers::STRUCTS,
     config::STRUCTS,
@@ -74,7 +75,7 @@ fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
     }
 }
 
-/// A later version may use reserved fields.
+/// Checks that a reserved field is 0, because a later version may use it.
 fn check_reserved(reserved: u32) -> Outcome {
     if reserved == 0 { Ok(()) } else { Err(value("a reserved field", reserved)) }
 }

@@ -45,7 +45,7 @@ records! {
     struct RawRayHit = "ls2d_ray_hit" {
         /// The shape that the ray meets.
         shape: RawShape,
-        /// Its body.
+        /// Body of that shape.
         body: RawBody,
         /// Fraction of the translation, 0 to 1.
         fraction: RawFx,
@@ -61,7 +61,7 @@ records! {
     struct RawCastHit = "ls2d_cast_hit" {
         /// The shape that is met.
         shape: RawShape,
-        /// Its body.
+        /// Body of that shape.
         body: RawBody,
         /// Fraction of the translation, 0 to 1.
         fraction: RawFx,
@@ -79,7 +79,7 @@ records! {
     struct RawClosest = "ls2d_closest_point" {
         /// The nearest shape.
         shape: RawShape,
-        /// Its body.
+        /// Body of that shape.
         body: RawBody,
         /// Distance in metres; negative inside.
         distance: RawFx,
@@ -105,7 +105,7 @@ records! {
         angle: RawAngle,
         /// Position of the shape's centre in the world, in metres.
         position: RawVec2,
-        /// Its geometry; other fields of the definition have no effect.
+        /// Geometry of the probe; other fields of the definition have no effect.
         shape: RawShapeDef,
     }
 }

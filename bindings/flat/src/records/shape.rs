@@ -50,7 +50,7 @@ constants! {
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
     /// Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing: the mean. Of two rules, the larger number applies.
+    /// Rule of mixing: the mean. If two shapes have different rules, the one with the larger number applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
     /// Rule of mixing: the square root of the product.
     MIX_GEOMETRIC_MEAN = 1, "LS2D_MIX_GEOMETRIC_MEAN";
@@ -105,7 +105,8 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Shapes of one group other than 0 always collide if it is positive, and never if it is negative.
+        /// Two shapes with an equal group always collide if the group is positive, never if it is negative. 0 is no
+        /// group.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
@@ -113,7 +114,7 @@ records! {
         restitution_mixing: u32,
         /// Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
-        /// Acceleration in m/s² of bodies in the area, along the axes of its body.
+        /// Acceleration in m/s² of bodies in the area, along the axes of the area's body.
         area_acceleration: RawVec2,
         /// Force in N per m² of the covered part of a body, along the axes of the area's body.
         area_force: RawVec2,
@@ -127,7 +128,7 @@ records! {
         area_density: RawFx,
         /// Acceleration in m/s² towards the centre of the area, at `attraction_radius`.
         attraction_acceleration: RawFx,
-        /// Distance in metres with full attraction. Nearer to the centre it decreases linearly to 0.
+        /// Distance in metres with full attraction. Nearer to the centre the attraction decreases linearly to 0.
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,
@@ -266,7 +267,7 @@ impl RawShapeDef {
         }
     }
 
-    /// The world validates links of chains.
+    /// Converts the geometry. Links of chains are not validated here but by the world.
     pub(crate) fn geometry(&self) -> Outcome<Geometry> {
         check_size::<Self>(self.size)?;
         if self.kind != LINK {

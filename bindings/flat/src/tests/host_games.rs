@@ -31,7 +31,7 @@ impl Sums {
     }
 }
 
-/// Equal for eight ticks, with players absent in some of them.
+/// Inputs of a tick, and a bit for each absent player. Both change every eight ticks.
 fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     let mut rng = Rng::new(tick / 8);
     let absent = u64::from(rng.next_u32() % 8) & u64::from(rng.next_u32());
@@ -198,7 +198,7 @@ fn any_tick_is_reached_from_the_nearest_saved_state() {
             assert_eq!(player.seek(tick), Status::None as i32);
             assert_eq!(player.game, states[usize::try_from(tick).unwrap()], "tick {tick}");
             reached = reached.max(tick);
-            // Ticks that were never played before, and fewer than `interval` others.
+            // The seek plays the ticks that were never played before, and fewer than `interval` others.
             let new = reached - from;
             assert!(
                 player.played - before < new + interval,

@@ -14,7 +14,7 @@ use libfuzzer_sys::fuzz_target;
 use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use lockstep2d::lockstep::Game;
 
-/// Longer logs are slower and rarely find more.
+/// Maximum length of a log in ticks. Longer logs are slower and rarely find more.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

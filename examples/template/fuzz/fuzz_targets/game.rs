@@ -8,7 +8,7 @@ use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use my_game::{MyGame, Setup};
 
 const PLAYERS: u32 = 2;
-/// Longer logs are slower and rarely find more.
+/// Maximum length of a log in ticks. Longer logs are slower and rarely find more.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {
