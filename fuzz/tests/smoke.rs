@@ -1,6 +1,7 @@
 //! Runs 200 to 20 000 random inputs for each of most targets without the fuzzer.
 
 use lockstep2d::math::Rng;
+use lockstep2d_fuzz::manifolds::Seen;
 use lockstep2d_fuzz::{
     broad_phases, hulls, lockstep, manifolds, matches, maths, pairs, questions, reports, snapshots, verdicts,
 };
@@ -120,7 +121,9 @@ fn contacts_are_exact() {
         *seen.entry(manifolds::run(&input)).or_insert(0) += 1;
     }
     println!("{seen:?}");
-    assert!(seen.len() == 4 && seen.values().all(|count| *count > 50), "{seen:?}");
+    for kind in [Seen::Apart, Seen::Near, Seen::Overlapping] {
+        assert!(seen.get(&kind).is_some_and(|count| *count > 50), "{seen:?}");
+    }
 }
 
 #[test]

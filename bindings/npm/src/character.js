@@ -1,5 +1,5 @@
 // Characters.
-import { byteArray, fail, instance, onlyKnown } from "./check.js";
+import { byteArray, fail, flag, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
@@ -18,12 +18,13 @@ function writeMover(at, options) {
 }
 
 function writeState(at, state) {
-    const { position, velocity = [0, 0], ground } = onlyKnown(state, STATE_FIELDS, "the state of a character");
+    const { position, velocity = [0, 0], ground, isWedged } = onlyKnown(state, STATE_FIELDS, "the state of a character");
     if (position === undefined) {
         fail("the state of a character has a position");
     }
     call("ls2d_mover_state_init", 0n, 0n, at);
-    write("mover_state", at, { position, velocity, flags: ground === undefined ? 0 : C.MOVER_ON_GROUND });
+    const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND) | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0);
+    write("mover_state", at, { position, velocity, flags });
     if (ground !== undefined) {
         write("mover_plane", fieldAt("mover_state", at, "ground"), ground);
     }

@@ -39,8 +39,9 @@ export function object(value, what) {
     return value;
 }
 
+/** Returns a copy, in which holes are undefined: `forEach` skips holes. */
 export function array(value, what) {
-    return Array.isArray(value) ? value : fail(`${what} is an array, and not ${shown(value)}`);
+    return Array.isArray(value) ? Array.from(value) : fail(`${what} is an array, and not ${shown(value)}`);
 }
 
 export function byteArray(value, what) {

@@ -141,16 +141,14 @@ export function expand(shapes) {
 
 function chainLinks({ points, closed, oneSided, options }) {
     const size = sizeOf("shape_def");
-    const before = size + 16 * points.length;
+    const corners = points.map((point) => vectorOf(point));
+    const before = size + 16 * corners.length;
     const prepare = (at) => {
         writeShape(at, circle(1, options));
-        points.forEach((point, index) => {
-            const [x, y] = vectorOf(point);
-            pair(at + size + 16 * index, x, y);
-        });
+        corners.forEach(([x, y], index) => pair(at + size + 16 * index, x, y));
     };
     const ask = (links, capacity, count, at) =>
-        statusOf("ls2d_chain_links", at, at + size, points.length, closed ? 1 : 0, oneSided ? 1 : 0, links, capacity, count);
+        statusOf("ls2d_chain_links", at, at + size, corners.length, closed ? 1 : 0, oneSided ? 1 : 0, links, capacity, count);
     const { at, count } = list(size, before, ask, prepare);
     return Array.from({ length: count }, (_, index) => ({ bytes: copyOf(at + index * size, size) }));
 }

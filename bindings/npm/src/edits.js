@@ -19,22 +19,19 @@ export class Edits extends Handle {
 
     /** Returns the handles; undefined for a list of commands. */
     spawnEach(options, poses) {
-        array(poses, "poses");
-        const size = sizeOf("pose");
-        const room = poses.length * (size + 8);
-        const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
-        const ids = rest + poses.length * size;
-        poses.forEach((pose, index) => {
+        const placed = array(poses, "poses").map((pose, index) => {
             const { position, angle = 0 } = object(pose, `pose ${index}`);
             // `write` skips undefined fields.
-            if (position === undefined) {
-                fail(`pose ${index} has no position`);
-            }
-            write("pose", rest + index * size, { position, angle });
+            return position === undefined ? fail(`pose ${index} has no position`) : { position, angle };
         });
+        const size = sizeOf("pose");
+        const room = placed.length * (size + 8);
+        const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
+        const ids = rest + placed.length * size;
+        placed.forEach((pose, index) => write("pose", rest + index * size, pose));
         putRaw(ids, -1n);
-        call("ls2d_spawn_each", this.handle, body, shapes, count, rest, poses.length, ids, poses.length);
-        return this.#allAdded(ids, poses.length);
+        call("ls2d_spawn_each", this.handle, body, shapes, count, rest, placed.length, ids, placed.length);
+        return this.#allAdded(ids, placed.length);
     }
 
     #allAdded(at, count) {
@@ -72,8 +69,8 @@ export class Edits extends Handle {
 
     addJoint(options) {
         const { anchor, axis, ...definition } = object(options, "a joint");
-        const size = sizeOf("joint_def");
-        const at = scratch(48 + size);
+        const place = anchor === undefined ? undefined : [...raws(anchor, "anchor"), ...raws(axis ?? [0, 0], "axis")];
+        const at = scratch(48 + sizeOf("joint_def"));
         writeJoint(at + 48, definition);
         if (options.a === undefined || options.b === undefined) {
             fail("a joint connects two bodies, `a` and `b`");
@@ -83,7 +80,7 @@ export class Edits extends Handle {
             if (frame !== undefined) {
                 fail(`a joint has either \`anchor\` or \`${frame}\`, because \`anchor\` sets \`${frame}\``);
             }
-            this.place(at, anchor, axis);
+            this.place(at, place);
         } else if (axis !== undefined) {
             fail("`axis` of a joint needs `anchor`");
         }
@@ -94,24 +91,22 @@ export class Edits extends Handle {
 
     /** Returns the handles; undefined for a list of commands. */
     addJointEach(options, pairs) {
-        array(pairs, "pairs");
-        const size = sizeOf("joint_def");
-        const at = scratch(size + 24 * pairs.length);
-        const ids = at + size + 16 * pairs.length;
-        writeJoint(at, options);
-        pairs.forEach((pair, index) => {
-            if (array(pair, `pair ${index}`).length !== 2) {
-                fail(`pair ${index} has 2 bodies, and not ${pair.length}`);
-            }
-            pair.forEach((body, end) => putRaw(at + size + 16 * index + 8 * end, id(body)));
+        const connected = array(pairs, "pairs").map((pair, index) => {
+            const bodies = array(pair, `pair ${index}`);
+            return bodies.length === 2 ? bodies.map((body) => id(body)) : fail(`pair ${index} has 2 bodies, and not ${bodies.length}`);
         });
+        const [size, count] = [sizeOf("joint_def"), connected.length];
+        const at = scratch(size + 24 * count);
+        const ids = at + size + 16 * count;
+        writeJoint(at, options);
+        connected.flat().forEach((body, index) => putRaw(at + size + 8 * index, body));
         putRaw(ids, -1n);
-        call("ls2d_add_joint_each", this.handle, at, at + size, 2 * pairs.length, ids, pairs.length);
-        return this.#allAdded(ids, pairs.length);
+        call("ls2d_add_joint_each", this.handle, at, at + size, 2 * count, ids, count);
+        return this.#allAdded(ids, count);
     }
 
-    place(at, anchor, axis = [0, 0]) {
-        const numbers = [...raws(anchor, "anchor"), ...raws(axis, "axis")];
+    /** Sets the frames of the joint at `at + 48` from the coordinates of its anchor and axis. */
+    place(at, numbers) {
         numbers.forEach((raw, index) => putRaw(at + 8 + 8 * index, raw));
         call("ls2d_joint_at", this.handle, at + 48, at + 8, at + 24, at + 48);
     }

@@ -72,6 +72,14 @@ export function rawOf(value, what = "a number") {
     throw new Lockstep2dError("VALUE", `${what} is ${shown(value)}, and not an integer, a decimal text or an Fx`);
 }
 
+// Refuses operators: otherwise `a < b` would compare floats or texts, and `a + b` would concatenate texts.
+function primitive(value, hint, what, methods) {
+    if (hint === "string") {
+        return value.toString();
+    }
+    throw new Lockstep2dError("FLOAT", `${what} has no operators: use ${methods}, or toNumber for drawing`);
+}
+
 export class Fx {
     constructor(raw) {
         if (typeof raw !== "bigint") {
@@ -164,12 +172,8 @@ export class Fx {
         return `Fx(${this})`;
     }
 
-    // Refuses operators: otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
     [Symbol.toPrimitive](hint) {
-        if (hint === "string") {
-            return this.toString();
-        }
-        throw new Lockstep2dError("FLOAT", "an Fx has no operators: use add, sub, mul, div, lt, gt, eq, or toNumber for drawing");
+        return primitive(this, hint, "an Fx", "add, sub, mul, div, lt, gt, eq");
     }
 }
 
@@ -214,6 +218,10 @@ export class Angle {
 
     toJSON() {
         return this.bits;
+    }
+
+    [Symbol.toPrimitive](hint) {
+        return primitive(this, hint, "an Angle", "add, sub, neg, toDegrees");
     }
 
     [INSPECT]() {

@@ -1,5 +1,5 @@
 // The wasm module: loading, memory, structs, handles.
-import { byteArray, count as u32Of, fail, integer, long, shown, string } from "./check.js";
+import { array, byteArray, count as u32Of, fail, integer, long, shown, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { Angle, Fx, bitsOf, rawOf, vectorOf } from "./fx.js";
 import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
@@ -79,14 +79,37 @@ function memory() {
     return bytes;
 }
 
-/** Address of memory of at least `size` bytes, valid until the next call. */
-export function scratch(size) {
+// Bytes at the start of the library's buffer that only `small` returns.
+const SMALL = 64;
+// Number of calls of `scratch`.
+let scratches = 0;
+
+function reserve(size) {
     const address = library().ls2d_scratch(size) >>> 0;
     if (address === 0) {
         throw new Lockstep2dError("MEMORY", `there is no memory for ${size} bytes`);
     }
     memory();
     return address;
+}
+
+/** Address of at least `size` bytes. The next call of `scratch` returns the same memory. */
+export function scratch(size) {
+    scratches += 1;
+    return reserve(SMALL + size) + SMALL;
+}
+
+/** Address of 64 bytes that are not part of `scratch`, so that getters of arguments may calculate. */
+export const small = () => reserve(SMALL);
+
+/** Runs `convert`, which reads arguments. Getters that reuse the scratch memory are an error. */
+function reading(convert) {
+    const before = scratches;
+    const result = convert();
+    if (scratches !== before) {
+        fail("a getter of an argument calls the library: pass plain values");
+    }
+    return result;
 }
 
 export function lastText() {
@@ -203,6 +226,10 @@ const FIELDS = Object.fromEntries(
 export const optionsOf = (name, without) => Object.keys(STRUCTS[name].fields).filter((field) => !without.includes(field)).map(camel);
 
 export function write(name, at, values) {
+    reading(() => writeFields(name, at, values));
+}
+
+function writeFields(name, at, values) {
     for (const [field, offset, kind, count] of FIELDS[name]) {
         const value = values[field];
         if (value === undefined) {
@@ -221,7 +248,7 @@ export function write(name, at, values) {
             if (value.length > count) {
                 fail(`${field} has ${value.length} items, at most ${count} are possible`);
             }
-            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, field));
+            array(value, field).forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, field));
         }
     }
 }

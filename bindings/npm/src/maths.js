@@ -1,12 +1,12 @@
 // Mathematics for the rules of a game.
 import { count, integer } from "./check.js";
 import { Angle, bitsOf, rawOf, vectorOf, Fx } from "./fx.js";
-import { call, fxAt, give, hashAt, library, scratch, u32, read } from "./library.js";
+import { call, fxAt, give, hashAt, library, small, u32, read } from "./library.js";
 
 const vector = (at) => ({ x: fxAt(at), y: fxAt(at + 8) });
 
 export const sqrt = (value) => {
-    const at = scratch(8);
+    const at = small();
     call("ls2d_fx_sqrt", rawOf(value), at);
     return fxAt(at);
 };
@@ -17,26 +17,26 @@ export const angleOf = (value) => new Angle(library().ls2d_angle_of(...vectorOf(
 export const dot = (a, b) => new Fx(library().ls2d_vec2_dot(...vectorOf(a), ...vectorOf(b)));
 export const cross = (a, b) => new Fx(library().ls2d_vec2_cross(...vectorOf(a), ...vectorOf(b)));
 export const normalize = (value) => {
-    const at = scratch(16);
+    const at = small();
     call("ls2d_vec2_normalize", ...vectorOf(value), at);
     return vector(at);
 };
 export const rotate = (value, angle) => {
-    const at = scratch(16);
+    const at = small();
     call("ls2d_vec2_rotate", ...vectorOf(value), bitsOf(angle), at);
     return vector(at);
 };
 
 export class Random {
     constructor(seed) {
-        const at = scratch(16);
+        const at = small();
         const bits = BigInt(integer(seed, "a seed", -(1n << 63n), (1n << 64n) - 1n));
         call("ls2d_rng_init", BigInt.asUintN(64, bits), at);
         this.state = read("rng", at);
     }
 
     #at() {
-        const at = scratch(32);
+        const at = small();
         const view = new DataView(library().memory.buffer);
         view.setBigUint64(at, this.state.state, true);
         view.setBigUint64(at + 8, this.state.increment, true);

@@ -285,9 +285,9 @@ export class World extends Edits {
     }
 
     castRay(origin, translation, filter) {
+        const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
         const at = scratch(sizeOf("ray_hit") + FILTER());
         const seen = filterAt(at + sizeOf("ray_hit"), filter);
-        const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
         return call("ls2d_cast_ray", this.handle, ...ray, seen, at) ? this.#hit("ray_hit", at) : undefined;
     }
 
@@ -308,10 +308,11 @@ export class World extends Edits {
 
     castShape(shape, position, translation, { angle, ...filter } = {}) {
         const [hit, probe] = [sizeOf("cast_hit"), sizeOf("probe")];
+        const along = raws(translation, "translation");
         const at = scratch(hit + probe + FILTER());
         this.#probe(at + hit, shape, position, angle);
         const seen = filterAt(at + hit + probe, filter);
-        const found = call("ls2d_cast_shape", this.handle, at + hit, ...raws(translation, "translation"), seen, at);
+        const found = call("ls2d_cast_shape", this.handle, at + hit, ...along, seen, at);
         return found ? this.#hit("cast_hit", at) : undefined;
     }
 
@@ -342,10 +343,10 @@ export class World extends Edits {
     }
 
     closest(point, within, filter) {
-        const size = sizeOf("closest_point");
+        const [size, from] = [sizeOf("closest_point"), raws(point, "point")];
         const at = scratch(size + FILTER());
         const seen = filterAt(at + size, filter);
-        const found = call("ls2d_closest", this.handle, ...raws(point, "point"), rawOf(within, "within"), seen, at);
+        const found = call("ls2d_closest", this.handle, ...from, rawOf(within, "within"), seen, at);
         return found ? read("closest_point", at) : undefined;
     }
 }

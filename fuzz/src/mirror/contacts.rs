@@ -27,8 +27,14 @@ struct KeptManifold {
 
 impl KeptManifold {
     /// The world accepts zero and unit vectors, and refuses the last two.
-    const NORMALS: [Vector; 6] =
-        [[0, 0], [0, 1 << 30], [-(1 << 30), 0], [759_250_125, 759_250_125], [1 << 30, 1 << 30], [i32::MIN, 1]];
+    const NORMALS: [Vector; 6] = [
+        [0, 0],
+        [0, 1 << 30],
+        [-(1 << 30), 0],
+        [759_250_125, 759_250_125],
+        [1 << 30, 1 << 30],
+        [i32::MIN, 1],
+    ];
 
     fn alter(&mut self, source: &mut Source<'_>) {
         if source.one_in(2) {

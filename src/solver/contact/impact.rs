@@ -101,15 +101,17 @@ impl<L: Lanes<N>, const N: usize> PointImpact<L, N> {
     }
 }
 
-/// Measures relative normal velocities before forces act in a tick.
+/// Measures relative normal velocities before forces act in a tick. Counts no faults: contacts without an impact are
+/// measured only if they share a batch with another one that has extras.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct MeasureApproach;
 
 impl Operation<Contacts> for MeasureApproach {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
-        let policy = &mut Saturating::<L, N>::new(faults);
+        let BatchParts { batch, extra: Some(extras), bodies, .. } = parts else { return };
+        let mut unread = 0;
+        let policy = &mut Saturating::<L, N>::new(&mut unread);
         let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
         for (point, forced) in batch.points[..batch.count].iter().zip(&mut extras.impacts.forced) {
@@ -118,7 +120,8 @@ impl Operation<Contacts> for MeasureApproach {
     }
 }
 
-/// Predicts the impacts of a sub-step, from the velocities after forces have acted.
+/// Predicts the impacts of a sub-step, from the velocities after forces have acted. Counts no faults, like
+/// [`MeasureApproach`].
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct PredictImpacts {
     pub(in crate::solver) constants: Constants,
@@ -128,8 +131,9 @@ pub(in crate::solver) struct PredictImpacts {
 impl Operation<Contacts> for PredictImpacts {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
-        let policy = &mut Saturating::<L, N>::new(faults);
+        let BatchParts { batch, extra: Some(extras), bodies, .. } = parts else { return };
+        let mut unread = 0;
+        let policy = &mut Saturating::<L, N>::new(&mut unread);
         let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, t) = batch.directions::<L>();
         let restitution = L::load(&extras.restitution);

@@ -251,13 +251,14 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         policy.count_faults_in(present[1]);
         let mut two = self.solve(second, [old, one], present[1], pair, policy);
         let both = L::both(present[0], present[1]);
-        policy.count_faults_in(both);
         let settled = L::splat(SETTLED.to_bits() - 1);
         let mut unsettled = L::both(beyond::<L, N>(L::sub(two, old), settled), both);
         for _ in 1..NORMAL_ROUNDS_MAX {
             if !L::any(unsettled) {
                 break;
             }
+            // Which contacts share a batch must not affect the number of faults.
+            policy.count_faults_in(unsettled);
             one = self.solve(first, [one, two], unsettled, pair, policy);
             let old = two;
             two = self.solve(second, [old, one], unsettled, pair, policy);

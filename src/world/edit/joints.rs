@@ -65,8 +65,9 @@ impl World {
     /// angle of a gear's frame on A, the anchor of a rack on B, or the length of a pulley's rope.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if a body is not in the world.
+    /// [`WorldError`] if a body is not in the world or a value is out of range.
     pub fn fit_joint(&self, def: &JointDef) -> Result<JointDef, WorldError> {
+        self.check_joint(def)?;
         let (a, b) = def.bodies();
         let body = |id: BodyId| self.state.bodies.get(id).ok_or(WorldError::StaleBody(id));
         Ok(def.fitted(body(a)?, body(b)?))
