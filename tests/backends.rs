@@ -4,7 +4,11 @@
 use core::fmt::Debug;
 use std::sync::Mutex;
 
+use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
+use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::{Angle, Rng, Vec2};
+use lockstep2d::solver::Revolute;
 use lockstep2d::world::{Backend, StepStats, World};
 use lockstep2d_scenes::Scene;
 use lockstep2d_tests::sweep;
@@ -103,6 +107,79 @@ fn the_number_of_threads_may_change_between_ticks() {
             }
             assert_eq!(alone.state_hash(), changing.state_hash(), "{name}, tick {tick}, {count} threads");
         }
+    });
+}
+
+/// Fast rods, wheels with heavy hubs, boxes, bouncing balls and a chain: bodies that exceed the speed limit beside some
+/// that do not, in the same batches.
+fn faulty_world(seed: u64) -> World {
+    let mut world = World::default();
+    let mut rng = Rng::new(seed);
+    let rectangle =
+        |width, height| ShapeDef::new(Polygon::rectangle(width, height).expect("a rectangle of this size"));
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
+    let hub = MassSource::Given { mass: fx!(3), centre: Vec2::ZERO, gyration: fx!(0.1) };
+    let mut last = None;
+    for row in 0..10 {
+        let floor = fx!(10) * row;
+        let ground = BodyDef::fixed().position((fx!(0), floor - fx!(1)));
+        world.spawn(&ground, &[rectangle(fx!(100), fx!(1))]).expect("a valid body");
+        for column in 0..38 {
+            let x = fx!(5) * column - fx!(95);
+            let body = BodyDef::dynamic().angle(Angle::from_radians(rng.range(fx!(-0.01), fx!(0.01))));
+            let at = |y| (x, floor + y);
+            let falling = (fx!(0), rng.range(fx!(-5), fx!(0)));
+            let fast = (rng.range(fx!(-20), fx!(20)), rng.range(fx!(-395), fx!(395)));
+            let (body, shape) = match column % 5 {
+                0 if rng.below(3) == 0 => {
+                    let body = body.velocity(fast).angular_velocity(rng.range(fx!(-1300), fx!(1300)));
+                    (body.position(at(fx!(0.045))), rectangle(fx!(0.5), fx!(0.05)))
+                }
+                1 if rng.below(3) == 0 => {
+                    (body.mass(hub).position(at(fx!(0.5))).angular_velocity(fx!(1500)), ball)
+                }
+                2 => (body.position(at(fx!(0.6))).velocity(falling), ball.restitution(fx!(0.5))),
+                _ => (body.position(at(fx!(0.495))).velocity(falling), rectangle(fx!(0.5), fx!(0.5))),
+            };
+            let body = world.spawn(&body, &[shape]).expect("a valid body");
+            let limit = Revolute::new().limit(fx!(-0.5), fx!(0.5));
+            if let Some(last) = last.replace(body).filter(|_| column % 4 == 0) {
+                let hinge = if row % 2 == 0 { limit } else { Revolute::new() };
+                let hinge = world.joint_at(last, body, hinge, (x, floor)).expect("both bodies are there");
+                world.add_joint(&hinge).expect("a valid joint");
+            }
+        }
+    }
+    world
+}
+
+/// Which contacts and hinges share a batch depends on the backend and the threads.
+#[test]
+fn faults_are_counted_equally_on_every_backend_and_number_of_threads() {
+    sweep::for_each((0..8).collect(), |seed| {
+        let mut alone = faulty_world(seed);
+        alone.set_backend(Backend::Scalar);
+        let mut others: Vec<(String, World)> = Vec::new();
+        for backend in Backend::available() {
+            let mut world = alone.clone();
+            assert!(world.set_backend(backend));
+            others.push((format!("{backend:?}"), world));
+        }
+        #[cfg(feature = "parallel")]
+        for count in [2, 3] {
+            let mut world = World::clone(&alone);
+            assert!(world.set_backend(Backend::best()) && world.force_threads(count));
+            others.push((format!("{count} threads"), world));
+        }
+        for tick in 1..=4 {
+            alone.step();
+            for (name, world) in &mut others {
+                world.step();
+                assert_eq!(world.faults(), alone.faults(), "seed {seed}, tick {tick}, {name}");
+                assert_eq!(world.state_hash(), alone.state_hash(), "seed {seed}, tick {tick}, {name}");
+            }
+        }
+        assert!(alone.faults() > 50, "seed {seed}: only {} faults", alone.faults());
     });
 }
 

@@ -130,9 +130,15 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Number of restores. A restore does not set the fields that every step changes. The caller has to set them.
+    /// Number of restores and calls of [`Arena::note_change`]. A restore does not set the fields that every step
+    /// changes. The caller has to set them.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
+    }
+
+    /// Tells caches that fields which every step changes have changed outside of a step.
+    pub(crate) fn note_change(&mut self) {
+        self.kept.returns += 1;
     }
 
     /// Sizes the page cache after the arena has been decoded.

@@ -10,7 +10,7 @@ use crate::simd::Machine;
 pub(super) struct CacheKey {
     /// `None` before the first tick.
     definitions: Option<Definitions>,
-    /// Number of times that joints have been restored.
+    /// [`Arena::returns`](crate::body::Arena::returns) of the joints.
     returns: u64,
     joints: Vec<u32>,
     bodies: Vec<u32>,
@@ -20,7 +20,7 @@ pub(super) struct CacheKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
     All,
-    /// Everything except impulses and angles, which have been restored.
+    /// Everything except impulses and angles, which have changed outside of a step.
     Arrangement,
     Nothing,
 }

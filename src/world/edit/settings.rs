@@ -94,6 +94,7 @@ impl World {
         for (_, joint) in state.joints.iter_mut() {
             joint.impulses.0.iter_mut().for_each(convert);
         }
+        state.joints.note_change();
     }
 }
 
