@@ -11,8 +11,8 @@ use lockstep2d::math::{Fx, Vec2 as FixedVec2};
 use lockstep2d::solver::Revolute;
 use lockstep2d::world::Config;
 
-/// A bone: a vertical capsule with its centre, half length and radius, in metres. `hinge` is the parent and the height
-/// of the hinge.
+/// A bone: a vertical capsule with its centre, half length and radius, in metres. `hinge` is the index of the parent
+/// bone, and the height of the hinge.
 struct Bone {
     centre: (Fx, Fx),
     half: Fx,

@@ -13,10 +13,10 @@ use lockstep2d::draw::{PAPER, Style};
 const FILE: &str = "LOCKSTEP2D_SCREENSHOT";
 /// Variable with the number of frames before the picture.
 const FRAMES: &str = "LOCKSTEP2D_FRAMES";
-/// Variable with the least number of pixels of each style, as in `fixed=1400 dynamic=400`.
+/// Variable with the least number of pixels of each style, such as `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
-/// Largest accepted difference of a colour channel: it is rounded to a linear float and back.
+/// Largest accepted difference of a colour channel. A channel is rounded to a linear float and back.
 const TOLERANCE: u8 = 2;
 
 #[derive(Resource)]
@@ -32,8 +32,8 @@ struct Expected {
     pixels: usize,
 }
 
-/// With `LOCKSTEP2D_SCREENSHOT=FILE.png` the app plays 240 frames (or `LOCKSTEP2D_FRAMES`), saves a picture of its
-/// window, and ends. It panics if a style in `LOCKSTEP2D_SHOWS` has too few pixels.
+/// Takes a picture if `LOCKSTEP2D_SCREENSHOT=FILE.png` is set: the app plays 240 frames (or `LOCKSTEP2D_FRAMES`), saves
+/// a picture of its window, and ends. It panics if a style in `LOCKSTEP2D_SHOWS` has too few pixels.
 pub(crate) fn take_when_asked(app: &mut App) {
     let Some(file) = std::env::var_os(FILE) else { return };
     let frames = std::env::var(FRAMES).ok().and_then(|frames| frames.parse().ok()).unwrap_or(240);
@@ -77,7 +77,7 @@ fn check(
     let picture = captured.image.clone().try_into_dynamic()?.into_rgb8();
     let (pixels, _) = picture.as_raw().as_chunks::<3>();
     compare(pixels, &plan.shows)?;
-    // A match needs frames before its first tick.
+    // A match plays its first tick only after some frames.
     if status.tick < u64::from(plan.frames) / 2 {
         return Err(format!("only {} ticks in {} frames", status.tick, plan.frames).into());
     }
@@ -85,7 +85,7 @@ fn check(
     Ok(())
 }
 
-/// At least half of a picture, but not all of it, must be background.
+/// Checks the numbers of pixels. At least half of a picture, but not all of it, must be background.
 fn compare(pixels: &[[u8; 3]], shows: &[Expected]) -> Result<(), String> {
     let of_colour = |colour: u32| pixels.iter().filter(|pixel| is_near(**pixel, colour)).count();
     let (background, total) = (of_colour(PAPER), pixels.len());

@@ -12,7 +12,7 @@ use bevy_lockstep2d_examples::app;
 use bevy_lockstep2d_examples::versus::{Versus, bot_pad, press};
 use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port, Udp, socket_address};
 
-/// The bot is an ordinary peer without Bevy.
+/// A bot: an ordinary peer without Bevy.
 #[derive(Resource)]
 struct Bot {
     peer: Peer<Versus, Port>,

@@ -9,7 +9,7 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2 as FixedVec2, fx_mul};
 use lockstep2d::world::{Snapshot, World as Physics};
 
-/// The input of a player is a direction: -1, 0 or 1.
+/// The game. The input of a player is a direction: -1, 0 or 1.
 pub struct Versus {
     world: Physics,
     players: [BodyId; 2],
@@ -81,7 +81,7 @@ pub const fn bot_pad(tick: u64) -> i8 {
     if tick % 90 < 50 { -1 } else { 1 }
 }
 
-/// Arrow keys of the first player of this machine.
+/// Reads the arrow keys for the first player of this machine.
 pub fn press(keys: Res<ButtonInput<KeyCode>>, mut inputs: ResMut<Inputs<Versus>>) {
     let pressed = |key| i8::from(keys.pressed(key));
     *inputs.held(0) = pressed(KeyCode::ArrowRight) - pressed(KeyCode::ArrowLeft);

@@ -26,7 +26,7 @@ pub struct DragPlugin;
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// `None` for the first dynamic body at the position.
+    /// Body to hold. `None` for the first dynamic body at the position.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -41,8 +41,8 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer. Holds the first dynamic body there, or the first that the pointer reaches, until
-    /// [`DragHand::release`].
+    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is none,
+    /// holds the first body that the pointer reaches.
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }
@@ -101,7 +101,8 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // Replaces the force of a frame without a tick. In a frame with two ticks, only the first applies it.
+    // Replaces the force of an earlier frame in which no tick was played. In a frame with two ticks, only the first
+    // applies it.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);

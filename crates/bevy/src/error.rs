@@ -23,9 +23,10 @@ pub enum LockstepError {
     Replay(Box<Verdict>),
     /// The replay cannot be played to a tick.
     Seek(SeekError),
-    /// A sync test found a state that depends on more than the inputs: loading loses state, or a step reads other data.
+    /// A sync test found a state that depends on more than the inputs: loading a save loses state, or a step reads
+    /// other data.
     SyncTest {
-        /// Ticks after which the states differ.
+        /// Number of ticks after which the states differ.
         tick: u64,
         /// Hash when the tick was played first.
         first: StateHash,
@@ -85,7 +86,7 @@ impl From<SetupError> for LockstepError {
     }
 }
 
-/// The driver has stopped. Only a replay can continue, after a [`Lockstep::seek`](crate::Lockstep::seek).
+/// Sent when the driver has stopped. Only a replay can continue, after a [`Lockstep::seek`](crate::Lockstep::seek).
 #[derive(Message, Clone, Debug)]
 pub struct LockstepFailed(
     /// Reason.

@@ -1,10 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
-//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent once, when its tick is final: peers
-//! have the same confirmed events in the same order, except those before a state that they received. A
-//! [`PredictedEvent`] is sent when an event first occurs in a played tick, for sounds and particles. A
-//! [`RetractedEvent`] follows if a rollback removes it. A local game and a replay send predicted and confirmed events
-//! in the same frame.
+//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent once, when its tick is final. All
+//! peers have the same confirmed events in the same order. A peer that received a state lacks the events before that
+//! state. A [`PredictedEvent`] is sent when an event first occurs in a played tick, for sounds and particles. A
+//! [`RetractedEvent`] follows if a rollback removes the event. A local game and a replay send predicted and confirmed
+//! events in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -44,7 +44,7 @@ impl WorldEvent {
         }
     }
 
-    /// Whether both are of one kind and of the same shapes, joint or body. Numbers such as a speed may differ.
+    /// Whether both events are of one kind, and of the same shapes, joint or body. Numbers such as a speed may differ.
     fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
@@ -61,7 +61,7 @@ impl WorldEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Ticks played, including that of the event.
+    /// Number of ticks played, including that of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
     /// Bodies of the shapes or joint, if they exist after the tick; or the body that fell asleep.
@@ -74,7 +74,7 @@ impl LoggedEvent {
     }
 }
 
-/// Passes on the events of the last tick of a world: contacts, hits, sensors, joints, sleep.
+/// Calls `found` with each event of the last tick of a world: contacts, hits, sensors, joints, sleep.
 pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(LoggedEvent)) {
     let events = world.events();
     let mut add = |event: WorldEvent| {
@@ -108,7 +108,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
 /// An event of a final tick, sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Ticks played, including that of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -117,11 +117,11 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event of a played tick, which a rollback may remove until the tick is confirmed. It is sent once, also if a
-/// rollback moves it by up to 16 ticks.
+/// An event of a played tick, which a rollback may remove until the tick is confirmed. If a rollback moves the event by
+/// up to 16 ticks, it is not sent again.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Ticks played, including that of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -132,7 +132,7 @@ pub struct PredictedEvent {
 /// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
-    /// Ticks played, including that of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event that was predicted.
     pub event: WorldEvent,
@@ -145,7 +145,7 @@ pub struct BodyEvent {
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Ticks played, including that of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,

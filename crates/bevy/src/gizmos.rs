@@ -31,7 +31,7 @@ impl<G> Default for LockstepGizmosPlugin<G> {
 pub struct LockstepGizmos {
     /// The shapes of all bodies.
     pub outlines: bool,
-    /// Outlines in colours of islands.
+    /// Outlines in one colour per island.
     pub islands: bool,
     /// Fat boxes of the broad phase.
     pub fat_boxes: bool,
@@ -43,7 +43,7 @@ pub struct LockstepGizmos {
     pub contact_normals: bool,
     /// Normal and friction forces.
     pub contact_forces: bool,
-    /// Contact points in colours of the solver.
+    /// Contact points in one colour per colour of the solver.
     pub solver_colours: bool,
     /// Anchors and arms of joints.
     pub joints: bool,
@@ -161,7 +161,7 @@ fn draw(gizmos: &mut Gizmos<LockstepGizmos>, primitive: &Primitive, scale: f32) 
     }
 }
 
-/// Outline around a convex polygon at a distance, with four lines around each vertex.
+/// Outline at a distance around a convex polygon. The arc around each vertex consists of four lines.
 fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     if radius <= 0.0 {
         return vertices.to_vec();
@@ -173,7 +173,7 @@ fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     };
     let arc = |index: usize| {
         let (before, after) = (normal(index + count - 1), normal(index));
-        // At the ends of a line, the arc leads around the end.
+        // At the end of a line, the arc is a half circle.
         let turn = if before.dot(after) < -0.999 { core::f32::consts::PI } else { before.angle_to(after) };
         (0..=4_u8).map(move |part| before.rotate(Vec2::from_angle(turn * f32::from(part) / 4.0)))
     };

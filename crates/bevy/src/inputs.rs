@@ -7,8 +7,8 @@ use crate::game::LockstepGame;
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
 /// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
-/// that are down. A *once* input replaces it for the next played tick alone: a jump, a list of commands. So a press
-/// counts once.
+/// that are down. A *once* input replaces the held input for the next played tick alone: a jump, a list of commands. So
+/// a press counts once.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;
@@ -48,7 +48,7 @@ impl<G: LockstepGame> Inputs<G> {
         &mut self.seat(player).held
     }
 
-    /// The input of a local player for the next tick alone, which begins as a copy of the held input.
+    /// The input of a local player for the next tick alone. At first it is a copy of the held input.
     pub fn once(&mut self, player: u32) -> &mut G::Input {
         let Seat { held, once } = self.seat(player);
         once.get_or_insert_with(|| held.clone())

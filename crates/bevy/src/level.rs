@@ -47,7 +47,7 @@ pub struct SpawnJoint {
     pub kind: JointKind,
     /// Anchor, in metres in the world.
     pub anchor: Vec2<Fx>,
-    /// Direction in the world of a slider, wheel or rack: the x axis of the joint's frames.
+    /// The x axis of the joint's frames, as a direction in the world. Used by sliders, wheels and racks.
     pub axis: Vec2<Fx>,
 }
 
@@ -76,7 +76,7 @@ impl SpawnJoint {
 pub enum LevelError {
     /// The world refuses its settings, a body or a joint.
     Refused {
-        /// `None` for the settings.
+        /// Entity of the body or joint. `None` for the settings.
         entity: Option<Entity>,
         /// Reason.
         error: WorldError,
@@ -102,12 +102,11 @@ impl fmt::Display for LevelError {
 
 impl core::error::Error for LevelError {}
 
-/// Turns all [`SpawnBody`] and [`SpawnJoint`] components into commands for the setup of a game, such as
-/// [`SandboxSetup::commands`](lockstep2d::lockstep::SandboxSetup).
+/// A scratch world finds the ids of the bodies. The game will assign the same ids.
 ///
-/// The components are removed, and the entities of bodies get their [`BodyView`]. Bodies and joints are created in the
+/// Removes the components, and inserts a [`BodyView`] into the entities of bodies. Bodies and joints are created in the
 /// order of the indices of their entities. For a match, build the level on one machine and send the commands to the
-/// others: entities may differ between machines.
+/// others, because entities may differ between machines.
 ///
 /// # Errors
 /// [`LevelError`]. All entities are then unchanged.

@@ -35,7 +35,7 @@ pub enum DriverKind {
 pub struct Lockstep<G: LockstepGame> {
     driver: Driver<G>,
     is_paused: bool,
-    /// Ticks to be played although the game is paused.
+    /// Number of ticks to be played although the game is paused.
     single_steps: u32,
     failure: Option<LockstepError>,
 }
@@ -117,7 +117,7 @@ impl<G: LockstepGame> Lockstep<G> {
         Self::new(Driver::Match(Box::new(MatchDriver::new(peer))))
     }
 
-    /// The game, which in a match may depend on guessed inputs.
+    /// The game. In a match, its state may depend on guessed inputs.
     #[must_use]
     pub fn game(&self) -> &G {
         self.driver.game().game()
@@ -152,8 +152,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Stops the ticks. In a match, the others receive a [`MatchEvent`](crate::MatchEvent) and decide whether they
-    /// stop, too. Otherwise they wait for this peer, without the limit of [`PeerOptions::patience`].
+    /// Stops the ticks. In a match, the other peers receive a [`MatchEvent`](crate::MatchEvent) and decide whether they
+    /// stop, too. Peers that do not stop wait for this peer, without the limit of [`PeerOptions::patience`].
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -216,8 +216,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Takes the finished bytes of the replay, each once, to be appended to its file. Empty for drivers that do not
-    /// record, and for a peer that joined after the first tick.
+    /// Takes the finished bytes of the replay, to be appended to its file. Each byte is returned once. Empty for
+    /// drivers that do not record, and for a peer that joined after the first tick.
     pub fn take_replay(&mut self) -> Vec<u8> {
         match &mut self.driver {
             Driver::Local(local) => local.take_replay(),

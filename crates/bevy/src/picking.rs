@@ -80,7 +80,7 @@ impl Plugin for PointerDragPlugin {
     }
 }
 
-/// Point of a ray on the plane of the views, and its distance.
+/// Point where a ray meets the plane of the views, and its distance along the ray.
 fn on_plane(ray: Ray3d) -> Option<(Vec3, f32)> {
     let distance = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d { normal: Dir3::Z })?;
     Some((ray.get_point(distance), distance))

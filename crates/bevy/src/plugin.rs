@@ -55,10 +55,11 @@ pub struct LockstepSettings {
     pub pixels_per_metre: f32,
     /// Whether views are interpolated between the last two ticks. They are then up to a tick late.
     pub interpolate: bool,
-    /// Half-life of the displacement between a view and a body that a rollback has moved. Zero moves the view at once.
+    /// Time in which the displacement of a view halves after a rollback has moved its body. Zero moves the view at
+    /// once.
     pub smoothing_half_life: Duration,
-    /// Displacements above this limit, in metres, are jumps without smoothing or interpolation: after a rollback, and
-    /// in a tick if the body's velocity does not explain them.
+    /// Displacements above this limit, in metres, are jumps without smoothing or interpolation. It applies to
+    /// displacements by a rollback, and to movements in a tick that the body's velocity does not explain.
     pub smoothing_limit: f32,
 }
 
@@ -84,7 +85,7 @@ impl LockstepSettings {
     }
 }
 
-/// Status of the game, updated in each frame in which there is one.
+/// Status of the game, updated in each frame while there is a game.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {
@@ -92,7 +93,7 @@ pub struct LockstepStatus {
     pub tick: u64,
     /// Number of confirmed ticks, which no rollback can change.
     pub confirmed: u64,
-    /// Ticks played in this frame, including repeated ones.
+    /// Number of ticks played in this frame, including repeated ones.
     pub stepped: u32,
     /// Largest number of ticks that a rollback in this frame went back.
     pub rolled_back: u32,

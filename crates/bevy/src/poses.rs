@@ -16,7 +16,7 @@ pub struct Pose {
 /// Poses of all bodies, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
-    /// Number of the last capture. An entry with another number is of a body that no longer exists.
+    /// Number of the last capture. An entry with another number belongs to a body that no longer exists.
     capture: u32,
     entries: Vec<Option<Entry>>,
 }

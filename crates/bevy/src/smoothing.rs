@@ -35,7 +35,7 @@ impl DrawnPose {
     }
 }
 
-/// Converts like `draw::to_f32`, with fewer instructions.
+/// Converts fixed point to floats as `draw::to_f32` does, with fewer instructions.
 pub(crate) fn metres(vector: FixedVec2<Fx>) -> Vec2 {
     const UNIT: f32 = 1.0 / (1_u64 << Fx::FRAC_NBITS) as f32;
     Vec2::new(vector.x.to_bits() as f32 * UNIT, vector.y.to_bits() as f32 * UNIT)
@@ -53,16 +53,17 @@ pub(crate) struct Offset {
     angle: f32,
 }
 
-/// Metres below which an offset is dropped if its angle is small, too: a tenth of a pixel at the default scale.
+/// Length in metres. An offset is dropped if its length is below this limit and its angle below [`ANGLE_MIN`]. A tenth
+/// of a pixel at the default scale.
 const POSITION_MIN: f32 = 1e-3;
-/// Radians below which an offset is dropped if its displacement is small, too.
+/// Angle in radians below which an offset can be dropped.
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {
     pub(crate) const ZERO: Self = Offset { position: Vec2::ZERO, angle: 0.0 };
 
-    /// The displacement between poses, along the shorter arc. Far from the origin, floats are too coarse for the
-    /// difference.
+    /// The displacement between poses, along the shorter arc. It is computed in fixed point, because floats are too
+    /// coarse far from the origin.
     pub(crate) fn between(from: Pose, to: Pose) -> Self {
         Offset { position: metres(to.position - from.position), angle: radians(to.angle - from.angle) }
     }

@@ -11,8 +11,9 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. A seek begins an epoch, and so does a loaded state of an
-/// earlier epoch or one that was decoded from bytes. The tick at its start may be unknown until the driver sets it.
+/// A tick, as a number of ticks since the start of an epoch. A new epoch begins after a seek, and when a loaded state
+/// is from an earlier epoch or was decoded from bytes. The tick at the start of an epoch may be unknown until the
+/// driver sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
@@ -26,32 +27,32 @@ struct Entry {
     announced: bool,
 }
 
-/// Largest number of ticks by which a rollback may move an event that is not sent again.
+/// Largest number of ticks by which a rollback may move an event without making it a new event.
 const SAME_EVENT_TICKS: u64 = 16;
 
 #[derive(Debug, Default)]
 pub(crate) struct StepLog {
     epoch: u32,
     ticks: u64,
-    /// Tick at which each epoch begins, if it is known.
+    /// Tick at which each epoch begins. `None` if it is unknown.
     bases: Vec<Option<u64>>,
     /// Unconfirmed events, in order, with ticks since the start of the epoch.
     pending: VecDeque<Entry>,
-    /// Announced events of rolled back ticks, which have not happened again.
+    /// Events that were announced, and whose ticks were rolled back. They have not happened again.
     withdrawn: Vec<LoggedEvent>,
     pub(crate) before: Poses,
     pub(crate) after: Poses,
     is_after_stale: bool,
     shown: Option<Stamp>,
-    /// Poses of the tick `shown` after it was played again.
+    /// Poses of the tick `shown`, if it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies whose ids may now belong to other bodies: missing in a loaded state, or of the time before a seek.
+    /// Bodies whose ids may now belong to other bodies: those that a loaded state lacks, and those from before a seek.
     pub(crate) missing: Vec<BodyId>,
-    /// Ticks played since the last frame, including repeated ones.
+    /// Number of ticks played since the last frame, including repeated ones.
     pub(crate) stepped: u32,
     /// Largest number of ticks that a load went back since the last frame.
     pub(crate) replayed: u32,
-    /// `None` while the log records.
+    /// State at which the log was suspended. `None` while the log records.
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,
@@ -89,7 +90,7 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
-        // In a pause between rounds, for example, a game does not step its world.
+        // A game may not step its world in every tick, for example in a pause between rounds.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
@@ -101,7 +102,7 @@ impl StepLog {
         });
     }
 
-    /// To be called after a load.
+    /// Must be called after a load. `stamp` is `None` if the state was decoded from bytes.
     pub(crate) fn loaded(&mut self, stamp: Option<Stamp>, world: Option<&World>) {
         let known = stamp.filter(|stamp| stamp.epoch == self.epoch);
         let back = match known {
@@ -124,7 +125,7 @@ impl StepLog {
         self.is_after_stale = true;
     }
 
-    /// Returns 0: this load does not count as a rollback.
+    /// Begins an epoch at a loaded state. Returns 0, because this load does not count as a rollback.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);
@@ -145,13 +146,13 @@ impl StepLog {
         self.bases.get(epoch as usize).copied().flatten()
     }
 
-    /// Sets the tick, unless it is known in this epoch.
+    /// Sets the number of ticks played, unless it is already known in this epoch.
     pub(crate) fn set_tick(&mut self, tick: u64) {
         let base = self.bases.get_mut(self.epoch as usize);
         base.map(|base| base.get_or_insert(tick.saturating_sub(self.ticks)));
     }
 
-    /// Ticks at the start of the epoch.
+    /// Number of ticks played at the start of the epoch. 0 if it is unknown.
     fn base(&self) -> u64 {
         self.base_of(self.epoch).unwrap_or(0)
     }
@@ -196,7 +197,7 @@ impl StepLog {
         self.missing.clear();
     }
 
-    /// Returns the events that were not announced yet.
+    /// Returns the events that were not announced before, and marks them as announced.
     pub(crate) fn announce(&mut self) -> Vec<LoggedEvent> {
         let base = self.base();
         let fresh = self.pending.iter_mut().filter(|entry| !entry.announced);
@@ -208,7 +209,7 @@ impl StepLog {
             .collect()
     }
 
-    /// Takes withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
+    /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
     pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
         let (base, played) = (self.base(), self.ticks);
         let is_over = |event: &LoggedEvent| event.tick + SAME_EVENT_TICKS < played;
@@ -219,7 +220,7 @@ impl StepLog {
         over
     }
 
-    /// Takes the events of final ticks.
+    /// Takes the events of the first `ticks` ticks, which are final.
     pub(crate) fn confirm(&mut self, ticks: u64) -> Vec<LoggedEvent> {
         let base = self.base();
         let is_final = |entry: &Entry| base + entry.event.tick <= ticks;

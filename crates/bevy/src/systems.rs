@@ -55,12 +55,12 @@ pub(crate) fn write_views<G: LockstepGame>(
     fresh: Query<(Entity, &BodyView), Added<BodyView>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Entities that the game has prepared as views, not those that the plugin spawned in the last frame.
+    // Entities that the game has prepared as views. Entities that the plugin spawned in the last frame are excluded.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if lockstep.is_added() {
-        // The game was replaced. Views prepared for the new game are not in the table.
+        // The game was replaced. Views prepared for the new game are not in the table, so they are kept.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
     }
     let world = lockstep.world();
@@ -137,8 +137,8 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was placed elsewhere: further than `limit` metres, and than twice the distance that its velocity
-/// covers.
+/// Whether a body was placed elsewhere. Then its way is longer than `limit` metres, and longer than twice the distance
+/// that its velocity covers.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;
@@ -157,7 +157,7 @@ fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> 
     commands.spawn((BodyView::new(body), transform)).id()
 }
 
-/// Z and scale belong to the game.
+/// Writes x, y and rotation. Z and scale belong to the game.
 fn write_transform(transform: &mut Transform, pose: DrawnPose, scale: f32) {
     (transform.translation.x, transform.translation.y) = (pose.position * scale).into();
     transform.rotation = Quat::from_rotation_z(pose.angle);

@@ -9,13 +9,13 @@ use crate::poses::Pose;
 use crate::smoothing::Offset;
 
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
-/// body. Add components or children that draw it, for example in an observer of `On<Add, BodyView>`.
+/// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
 /// If a game adds this component to an entity in the frame in which the body appears, or before, that entity becomes
 /// the view.
 ///
-/// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A body keeps its view if a
-/// rollback or a seek replaces it by one with the same id, kind, user data and shapes.
+/// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A rollback or a seek may
+/// replace a body by another body. The view is kept if both have the same id, kind, user data and shapes.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(immutable)]
 #[require(Transform)]
@@ -44,7 +44,7 @@ impl BodyView {
 /// The views of all bodies.
 #[derive(Resource, Debug, Default)]
 pub struct BodyViews {
-    /// Indexed by the slots of their bodies.
+    /// Views, indexed by the slots of their bodies.
     slots: Vec<Option<View>>,
     frame: u32,
 }
@@ -95,12 +95,12 @@ impl BodyViews {
         self.slots.iter_mut().flatten()
     }
 
-    /// Views that are not [seen](BodyViews::see) in this frame are taken by [`BodyViews::take_unseen`].
+    /// Begins a frame. Views that are not [seen](BodyViews::see) in it are taken by [`BodyViews::take_unseen`].
     pub(crate) fn begin_frame(&mut self) {
         self.frame = self.frame.wrapping_add(1);
     }
 
-    /// Moves the view of a body, if there is one.
+    /// Moves the view of a body. Returns `false` if there is none.
     pub(crate) fn see(&mut self, body: BodyId, previous: Pose, current: Pose) -> bool {
         let frame = self.frame;
         let Some(view) = self.view_mut(body) else { return false };
@@ -110,7 +110,7 @@ impl BodyViews {
         true
     }
 
-    /// Returns the view that had the slot before.
+    /// Adds a view. Returns the view that had the slot before.
     pub(crate) fn insert(
         &mut self,
         body: BodyId,

@@ -133,7 +133,7 @@ fn entity_of<R: Resource>(world: &World) -> Entity {
     world.resource_entities().get(id).unwrap()
 }
 
-/// Finds values by the names of their fields.
+/// Finds fields by their names, as an inspector does.
 #[test]
 fn an_inspector_can_read_and_change_what_is_shown() {
     let mut app = sandbox_app();

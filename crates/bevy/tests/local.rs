@@ -1,4 +1,4 @@
-//! A local game: its ticks come at its rate, its views follow the bodies, and its events are those without Bevy.
+//! A local game: its ticks come at its rate, its views follow the bodies, and its events are the same as without Bevy.
 
 mod common;
 
@@ -81,7 +81,7 @@ fn a_rollback_without_a_difference_moves_no_view() {
 
 #[test]
 fn the_views_of_bodies_are_kept_through_rollbacks() {
-    // Bodies that a rollback removes for a moment keep their entities.
+    // Bodies that a rollback removes for a moment keep their views.
     let run = |game: Lockstep<Arena>| {
         let mut app = app(game, 3, TICK);
         app.init_resource::<Births>()
@@ -149,7 +149,7 @@ fn an_input_given_once_counts_once() {
 fn views_are_drawn_between_two_ticks() {
     let mut app = app(local(), 1, TICK / 2);
     app.insert_resource(LockstepSettings { pixels_per_metre: 1.0, ..LockstepSettings::default() });
-    // The player's positions by tick.
+    // Positions of the player, by tick.
     let mut places = std::collections::BTreeMap::new();
     let mut moved = 0.0_f32;
     // The first frame has no duration.

@@ -110,7 +110,7 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     check_replay(players, end);
 }
 
-/// Players have the same confirmed events, and each predicted event is sent once.
+/// Checks that all players have the same confirmed events, and that each predicted event is sent once.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
     assert!(all.values().map(Vec::len).sum::<usize>() > 500);
@@ -130,7 +130,7 @@ fn check_events(players: &[Player], end: u64) {
     }
 }
 
-/// The replay of the host verifies for the game itself, and has the same events without Bevy.
+/// Checks that the replay of the host verifies for the game without Bevy, and has the same events.
 fn check_replay(mut players: Vec<Player>, end: u64) {
     let events = players[0].events(1, end);
     let world = players[0].app.world_mut();
@@ -150,7 +150,7 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
     assert_eq!(played, events);
 }
 
-/// Largest movement of the host's view of the guest's body in a frame, in metres.
+/// Largest movement in one frame, in metres, of the host's view of the guest's body.
 fn largest_jump(settings: LockstepSettings) -> f32 {
     let network = bad_network();
     let setup = Setup::default();
@@ -166,7 +166,7 @@ fn largest_jump(settings: LockstepSettings) -> f32 {
         network.set_time(network.time() + TICK);
         apps.iter_mut().for_each(App::update);
         let world = apps[0].world();
-        // The guest, whose inputs are guessed.
+        // The body of the guest, whose inputs the host guesses.
         let Some((_, view)) = world.resource::<BodyViews>().iter().nth(5) else { continue };
         let place = world.get::<Transform>(view).unwrap().translation.truncate() / settings.pixels_per_metre;
         if let Some(last) = last.replace(place).filter(|_| world.resource::<LockstepStatus>().tick > 60) {

@@ -1,4 +1,4 @@
-//! The replay driver: it plays, seeks in both directions, and its views follow.
+//! The replay driver plays and seeks in both directions, and the views follow.
 
 mod common;
 

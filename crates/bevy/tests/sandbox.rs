@@ -23,7 +23,7 @@ fn app<G: LockstepGame>(game: Lockstep<G>, frame: Duration) -> App {
     app
 }
 
-/// Heights of the view in 80 frames of a quarter of a tick, after a command.
+/// Heights of the view after a command, in 80 frames of a quarter of a tick each.
 fn heights(command: impl FnOnce(&BodyView) -> Command) -> Vec<f32> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] };
@@ -54,7 +54,7 @@ fn a_fast_body_is_drawn_on_its_way() {
     let velocity = FixedVec2::new(fx!(0), fx!(300));
     let heights =
         heights(|view| Command::SetVelocity { body: view.body(), velocity, angular_velocity: fx!(0) });
-    // 5 m in a tick are 1.25 m in each of four frames.
+    // The body moves 5 m in a tick, which is 1.25 m in each of four frames.
     let steps = heights.windows(2).map(|pair| pair[1] - pair[0]);
     let largest = steps.fold(0.0_f32, f32::max);
     assert!((1.0..1.5).contains(&largest), "{largest}");

@@ -12,14 +12,14 @@ pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
 pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 
-/// Both streams are written with ANSI colours, which [`Tool::run`](crate::Tool::run) strips where they are not
-/// supported.
+/// The streams of a command. Both are written with ANSI colours, which [`Tool::run`](crate::Tool::run) strips where
+/// they are not supported.
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
     /// Whether messages go to a terminal.
     pub(crate) is_terminal: bool,
-    /// Whether the process runs only this command, which then handles its signals.
+    /// Whether the process runs only this command. The command then handles the signals of the process.
     pub(crate) owns_process: bool,
 }
 

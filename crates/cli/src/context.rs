@@ -29,7 +29,8 @@ impl<'a, G: Game> Context<'a, G> {
         files::read(path, self.limits().file_bytes).map_err(CommandError::read(path))
     }
 
-    /// Panics if the game has no scenes: the table then omits the commands that call this.
+    /// The scenes of the game. Panics if there are none. In that case the table omits the commands that call this
+    /// function.
     pub(crate) fn catalogue(&self) -> &'a dyn Catalogue<G> {
         self.tool.catalogue.as_deref().expect("the command is listed only where there are scenes")
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Counts {
     pub(crate) bodies: usize,
-    /// Bodies that are simulated: neither fixed, disabled nor asleep.
+    /// Number of simulated bodies: neither fixed, disabled nor asleep.
     pub(crate) awake: usize,
     pub(crate) asleep: usize,
     pub(crate) shapes: usize,

@@ -1,7 +1,7 @@
 //! [`Measures`]: the energies of a world, and errors that should stay small.
 //!
-//! They are floats because they are only drawn. Correctly rounded operations of IEEE 754 give the same plot on every
-//! machine.
+//! The values are floats because they are only drawn. Only correctly rounded operations of IEEE 754 are used, so the
+//! plot is the same on every machine.
 #![expect(
     clippy::disallowed_types,
     clippy::float_arithmetic,

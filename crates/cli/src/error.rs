@@ -88,7 +88,7 @@ pub(crate) enum CommandError {
     /// The game does not expose its world, so it cannot be drawn.
     NoPictures,
     NoFormat,
-    /// The extension of the output file belongs to another format than the one that an option selects.
+    /// The extension of the output file belongs to another format than the selected one.
     Extension {
         path: PathBuf,
         option: &'static str,
@@ -110,7 +110,7 @@ pub(crate) enum CommandError {
         path: PathBuf,
         format: &'static str,
     },
-    /// A file is not a replay, report or snapshot, or a report or snapshot is damaged or of another version.
+    /// A file is not a replay, report or snapshot. Or it is a report or snapshot that is damaged or of another version.
     Evidence {
         path: PathBuf,
         error: EvidenceError,
@@ -124,7 +124,7 @@ pub(crate) enum CommandError {
         path: PathBuf,
         error: LineError,
     },
-    /// A file of keys or signatures is too large or not text, or a signature file is not a regular file.
+    /// A file of keys or signatures is too large or is not text. Or a signature file is not a regular file.
     NoText {
         path: PathBuf,
     },

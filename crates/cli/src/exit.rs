@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// The outcome of a command, as an exit code. The outcome of several files is the largest, in the order of the
-/// variants.
+/// The outcome of a command, as an exit code. For several files, it is the worst of their outcomes. The variants are
+/// ordered from best to worst.
 ///
 /// ```
 /// use lockstep2d_cli::Exit;

@@ -11,7 +11,7 @@ use lockstep2d::lockstep::Game;
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// Reads at most `bytes_max + 1` bytes of a file. The last one shows that the file is too large.
+/// Reads at most `bytes_max + 1` bytes of a file. If the last of these bytes exists, the file is too large.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let expected = file.metadata()?.len();
@@ -21,7 +21,7 @@ pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
 /// Reads at most `bytes_max + 1` bytes of a stream. `expected` is an estimate of its length.
 pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
     let end = bytes_max.saturating_add(1);
-    // One byte more, so that the read that finds the end does not double the capacity.
+    // The buffer has one byte more, so that the read that finds the end of the file does not double the capacity.
     let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
     if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {

@@ -7,13 +7,13 @@ use lockstep2d::SEMANTICS;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 
-/// Separates the digest from other uses of BLAKE3.
+/// Prefix of the hashed bytes, which separates this digest from other uses of BLAKE3.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
 /// The BLAKE3 digest of the engine semantics, rules, setup and inputs of a game, defined in FORMAT.md.
 ///
-/// It does not depend on block boundaries, checkpoints or the trailer. An incomplete file has the digest of the game up
-/// to its last complete block. [`Signatures`](crate::signature::Signatures) has an example.
+/// The digest does not depend on block boundaries, checkpoints or the trailer. The digest of an incomplete file is that
+/// of the game up to the last complete block. [`Signatures`](crate::signature::Signatures) has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GameDigest(blake3::Hash);
 
@@ -42,7 +42,7 @@ impl GameDigest {
         hasher.update(&header.rules_version.to_le_bytes());
         add_bytes(&mut hasher, header.rules_name.as_bytes());
         add_bytes(&mut hasher, header.setup);
-        // Joins runs that were split at the end of a block.
+        // Joins runs of equal inputs that were split at the end of a block.
         let mut run: Option<(u64, &[u8])> = None;
         while let Some(part) = reader.next_part()? {
             let Part::Inputs(block) = part else { break };
@@ -76,7 +76,7 @@ impl fmt::Display for GameDigest {
     }
 }
 
-/// Why a program for the game `G` cannot verify these semantics and rules.
+/// Returns why a program for the game `G` cannot verify these semantics and rules, or `None` if it can.
 pub(crate) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: SEMANTICS });
@@ -92,7 +92,7 @@ fn add_run(hasher: &mut Hasher, run: Option<(u64, &[u8])>) {
     }
 }
 
-/// Hashes the length first: different sequences of parts hash different bytes.
+/// Hashes bytes after their length, so that different sequences of parts never hash the same bytes.
 fn add_bytes(hasher: &mut Hasher, bytes: &[u8]) {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     hasher.update(&length.to_le_bytes()).update(bytes);

@@ -1,4 +1,4 @@
-//! The command-line tools for replays as a library: one line in `main` provides them for the rules of a game.
+//! The command-line tools for replays, as a library. One line in `main` provides them for the rules of a game.
 //!
 //! ```no_run
 //! # mod my_game {
@@ -25,7 +25,7 @@
 //! }
 //! ```
 //!
-//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
+//! `run` provides `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
 //! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`. With the feature `view`,
 //! `Tool::with_viewer` adds `view`, which opens a window.
 
@@ -67,7 +67,7 @@ pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 pub use walk::{Walk, WalkError};
 
-/// Runs the tools of a game without scenes, with the arguments of this process.
+/// Runs the tools of a game with the arguments of this process. There are no scenes.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

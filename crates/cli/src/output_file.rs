@@ -4,7 +4,7 @@
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
 //! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. Without hard links, a file that another
 //!   program creates just before [`OutputFile::publish`] can still be replaced.
-//! - With file locks, one process writes a target at a time. The others fail.
+//! - If the file system has locks, one process at a time writes a target. The others fail.
 //! - On Unix, only its owner can read a private file.
 //!
 //! A killed process leaves its temporary file, which the next writer of the target reuses.
@@ -46,22 +46,22 @@ enum Readers {
     Owner,
 }
 
-/// Unless it is published, its temporary file is deleted on drop.
+/// A file to write. If it is dropped before it is published, its temporary file is deleted.
 pub(crate) struct OutputFile {
     /// Path given by the user, for messages.
     name: PathBuf,
-    /// `name` with its links resolved.
+    /// `name` with its symbolic links resolved.
     target: PathBuf,
-    /// `None` if the target is written directly.
+    /// Path of the temporary file. `None` if the target is written directly.
     temporary: Option<PathBuf>,
-    /// The file is locked, unless the target is written directly or the file system has no locks.
+    /// The open file. It is locked, unless the target is written directly or the file system has no locks.
     file: File,
     overwrite: Overwrite,
 }
 
 impl OutputFile {
-    /// Creates the temporary file of a target. To be called before long computations, to report errors early: an
-    /// existing file without `--force`, or another process that writes the target.
+    /// Creates the temporary file of a target. Call it before long computations, so that errors are reported early.
+    /// Fails if the file exists without `--force`, or if another process writes the target.
     ///
     /// A target that is not a regular file, such as `/dev/stdout`, is written directly.
     pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
@@ -77,7 +77,7 @@ impl OutputFile {
         let failed = CommandError::write(path);
         check(path, overwrite)?;
         let name = path.to_path_buf();
-        // A link is preserved, and the file that it refers to replaced.
+        // A symbolic link is preserved. The file that it refers to is replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
         match fs::metadata(&target) {
             Ok(metadata) if !metadata.is_file() => {
@@ -93,7 +93,7 @@ impl OutputFile {
         let temporary = PathBuf::from(temporary);
         let file = lock(&temporary, &name, readers)?;
         let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite };
-        // A writer that had the lock until now may have published the target.
+        // Another writer may have had the lock until now, and published the target.
         check(path, overwrite)?;
         output.file.set_len(0).map_err(failed)?;
         Ok(output)
@@ -112,7 +112,7 @@ impl OutputFile {
         };
         self.file.sync_all().map_err(&failed)?;
         if !self.overwrite.force {
-            // Unlike a rename, a hard link never replaces a file. Dropping `self` deletes the temporary name.
+            // A hard link never replaces a file, but a rename does. Dropping `self` deletes the temporary name.
             match fs::hard_link(temporary, &self.target) {
                 Ok(()) => return Ok(()),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -140,7 +140,7 @@ impl Write for OutputFile {
 
 impl Drop for OutputFile {
     fn drop(&mut self) {
-        // The file is deleted while it is locked: no other process can have begun to write it.
+        // The file is deleted while it is locked, so no other process can have begun to write it.
         if let Some(temporary) = &self.temporary {
             let _ = fs::remove_file(temporary);
         }
@@ -159,7 +159,8 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
 fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, CommandError> {
     let failed = CommandError::write(name);
     for _ in 0..ATTEMPTS_MAX {
-        // A link or a pipe of this name could change another file, or block.
+        // A link or a pipe of this name is refused. Writing to a link could change another file, and a pipe could
+        // block.
         if fs::symlink_metadata(temporary).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(failed(io::ErrorKind::AlreadyExists.into()));
         }
@@ -167,11 +168,11 @@ fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, Command
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(CommandError::Busy { path: name.to_path_buf() }),
-            // Without locks, two writers of one target are not detected.
+            // The file system has no locks. Two writers of one target are then not detected.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // The previous writer may have renamed or deleted the file before it was locked.
+        // Before the lock, the previous writer may have renamed or deleted the file.
         if is_at(&file, temporary) {
             return Ok(file);
         }
@@ -186,7 +187,7 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
     if readers == Readers::Owner {
         use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
         let file = options.mode(OWNER_ONLY).open(temporary)?;
-        // A killed process may have left the file, with other permissions.
+        // A killed process may have left the file with other permissions.
         file.set_permissions(fs::Permissions::from_mode(OWNER_ONLY))?;
         return Ok(file);
     }

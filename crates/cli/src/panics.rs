@@ -1,4 +1,4 @@
-//! [`catch`]: catches a panic of the game, so that `verify` continues with other files, and other commands end with an
+//! [`catch`]: catches a panic of the game. `verify` then continues with other files, and other commands end with an
 //! error.
 
 use std::any::Any;
@@ -17,7 +17,7 @@ const MESSAGE_CHARS_MAX: usize = 400;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Panic {
     pub(crate) message: String,
-    /// File, line and column, if the panic started on this thread.
+    /// File, line and column. `None` if the panic started on another thread.
     pub(crate) location: Option<String>,
 }
 
@@ -53,12 +53,12 @@ thread_local! {
     static TICKS: Cell<Option<u64>> = const { Cell::new(None) };
 }
 
-/// Notes the played ticks, for [`guard`].
+/// Notes the number of played ticks, for the error of [`guard`].
 pub(crate) fn played(ticks: u64) {
     TICKS.set(Some(ticks));
 }
 
-/// Returns a panic instead of printing it. Data that `work` was changing must not be used afterwards.
+/// Calls `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
 pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);
@@ -67,7 +67,7 @@ pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     result.map_err(|payload| Panic { message: message(payload.as_ref()), location: LOCATION.take() })
 }
 
-/// Installs a hook that records the location of caught panics and passes on others.
+/// Installs a hook that records the location of caught panics. Other panics are passed to the previous hook.
 fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -82,7 +82,7 @@ fn listen() {
     });
 }
 
-/// A panic of the game stops the command with an error.
+/// Runs a command. A panic of the game stops the command with an error that names the file.
 pub(crate) fn guard(path: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
     TICKS.set(None);
     catch(command).unwrap_or_else(|panic| {

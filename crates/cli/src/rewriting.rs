@@ -22,7 +22,8 @@ pub(crate) enum CopyError {
 }
 
 impl<G: Game> Copy<G> {
-    /// Plays the first `ticks` ticks of a replay, or all if it has fewer, and records them again.
+    /// Plays the first `ticks` ticks of a replay and records them again. If the replay has fewer ticks, it is copied to
+    /// its end.
     pub(crate) fn new(file: &[u8], ticks: u64, limits: &Limits) -> Result<Self, CopyError> {
         let unplayable = |verdict| CopyError::Replay { ticks: 0, verdict };
         let mut replay = VerifiedReplay::<G>::open(file, limits).map_err(unplayable)?;

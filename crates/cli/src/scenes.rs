@@ -2,7 +2,8 @@
 
 use lockstep2d::lockstep::Game;
 
-/// Returns the inputs of all players for a tick, from its number and the game before it.
+/// A function that returns the inputs of all players for a tick. Its arguments are the number of the tick and the game
+/// before the tick.
 pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 
 /// The scenes of a game.

@@ -39,7 +39,7 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) view: Option<fn(&G) -> View>,
-    /// Commands added by methods.
+    /// Commands added by [`Tool::with_command`] and `Tool::with_viewer`.
     own: Vec<(Command, OwnCommand)>,
 }
 
@@ -71,14 +71,14 @@ impl<G: Game> Tool<G> {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Sets the default view of `export` on the game's world ([`Game::world`]), instead of [`View::default`].
-    /// Animations use only the aspect ratio of its size. Arguments override window, layers and size.
+    /// Sets the default view in which `export` shows the game's world ([`Game::world`]), instead of [`View::default`].
+    /// Animations use only the aspect ratio of the view's size. Arguments override window, layers and size.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {
         Tool { view: Some(view), ..self }
     }
 
-    /// Adds a command of the game's own, which prints its output itself.
+    /// Adds a command of the game. The command prints its output itself.
     #[must_use]
     pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
         self.own.push((command, Box::new(run)));
@@ -108,14 +108,14 @@ impl<G: Game> Tool<G> {
     /// Runs the command that the arguments of this process select, with colours on terminals.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // Locked streams would deadlock a game that prints or panics on another thread.
+        // The streams are not locked: a game that prints or panics on another thread would wait for the lock forever.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console = Console { out: &mut out, err: &mut err, is_terminal, owns_process: true };
         self.run_on(std::env::args_os(), console).into()
     }
 
-    /// Runs the command that `arguments` select, of which the first is the program's name. Results go to `out`,
+    /// Runs the command that `arguments` select. The first argument is the program's name. Results go to `out`,
     /// messages to `err`, both with ANSI colours.
     pub fn run_with<A>(
         &self,

@@ -25,7 +25,7 @@ pub(crate) fn command() -> Command {
         .arg(arguments)
 }
 
-/// An error of the viewer is [`Exit::Trouble`].
+/// Runs the viewer. An error of the viewer is [`Exit::Trouble`].
 pub(crate) fn run<G: Game + 'static>(viewer: Viewer<G>, matches: &ArgMatches) -> Exit {
     let arguments = matches.get_many::<OsString>(ARGUMENTS).into_iter().flatten().cloned();
     let name = [OsString::from("view")];

@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 
 use crate::files::EXTENSION;
 
-/// Maximum number of names of a folder in memory. A larger folder is listed again for each batch.
+/// Maximum number of names of a folder that are kept in memory. A larger folder is listed again for each batch of
+/// names.
 const NAMES_MAX: usize = 4096;
 
 /// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
 ///
-/// Links to folders are not followed, because they may form cycles. Only regular files and links to them count: reading
-/// a pipe would block. A file that is created during the walk is found once or not at all.
+/// Links to folders are not followed, because they may form cycles. Only regular files and links to regular files are
+/// returned, because reading a pipe would block. A file that is created during the walk is returned once or not at all.
 ///
 /// ```
 /// use lockstep2d_cli::{Walk, WalkError};
@@ -34,18 +35,18 @@ const NAMES_MAX: usize = 4096;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub struct Walk {
-    /// The path to the current folder.
+    /// The open folders, from the outermost to the current one.
     folders: Vec<Folder>,
     names_max: usize,
 }
 
 struct Folder {
     path: PathBuf,
-    /// The next names in order, and whether each is a folder.
+    /// The next names in order. The value is whether the name is that of a folder.
     names: BTreeMap<OsString, bool>,
     /// The last name that was returned.
     last: Option<OsString>,
-    /// Whether the folder has no entries after `names`.
+    /// Whether `names` has all remaining entries of the folder.
     is_listed: bool,
 }
 
@@ -113,7 +114,7 @@ impl Folder {
         Ok(Some((path, is_folder)))
     }
 
-    /// Keeps the first `names_max` names after the last one that was returned.
+    /// Lists the folder again. Keeps the first `names_max` names after the last returned name.
     fn list(&mut self, names_max: usize) -> io::Result<()> {
         self.is_listed = true;
         for entry in fs::read_dir(&self.path)? {

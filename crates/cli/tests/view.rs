@@ -1,4 +1,4 @@
-//! The command `view` hands its arguments to the viewer, and its errors become exit code 2.
+//! The command `view` passes its arguments to the viewer. Errors of the viewer become exit code 2.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -27,7 +27,7 @@ fn errors_of_the_viewer_are_exit_code_2() {
     }
 }
 
-/// Needs a screen: `crates/viewer/test-window` runs it.
+/// Needs a screen, so only `crates/viewer/test-window` runs it.
 #[test]
 #[ignore = "opens a window"]
 fn a_replay_is_shown_in_a_window() {

@@ -14,8 +14,8 @@ const CHANNEL: usize = 0;
 
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.
 ///
-/// The channels are unordered and unreliable, as UDP is. A member that connects again has another address, and the
-/// session recognises it by its key.
+/// The channels are unordered and unreliable, as UDP is. A member that connects again has another address. The session
+/// recognises the member by its key.
 pub struct Matchbox {
     socket: WebRtcSocket,
     received: VecDeque<(Address, Vec<u8>)>,
@@ -40,7 +40,7 @@ impl Matchbox {
         Self::with_builder(WebRtcSocket::builder(room_url))
     }
 
-    /// Enters a room with custom settings, such as ICE servers. The channel is added here.
+    /// Enters a room with custom settings, such as ICE servers. This function adds the data channel.
     ///
     /// ```no_run
     /// use lockstep2d_matchbox::Matchbox;
@@ -84,8 +84,8 @@ impl Matchbox {
         &self.others
     }
 
-    /// Whether the room is lost: the signalling server was not reached, or has ended. This peer would have to enter
-    /// again.
+    /// Whether the room is lost, because the signalling server was not reached or has ended. This peer would have to
+    /// enter again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.is_closed
@@ -96,7 +96,7 @@ impl Transport for Matchbox {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Some(peer) = peer_of(to) else { return };
         let Ok(channel) = self.socket.get_channel_mut(CHANNEL) else { return };
-        // `update` also detects a lost room.
+        // An error means that the room is lost, which `update` also detects.
         let _lost = channel.try_send(packet.to_vec().into(), peer);
     }
 
@@ -111,7 +111,7 @@ impl Transport for Matchbox {
     }
 }
 
-/// The id from the signalling server.
+/// The address is the id that the signalling server assigned.
 fn address_of(peer: PeerId) -> Address {
     Address::new(peer.0.as_bytes()).unwrap_or_else(Address::nowhere)
 }

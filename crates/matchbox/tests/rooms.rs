@@ -13,7 +13,7 @@ use lockstep2d_matchbox::Matchbox;
 use lockstep2d_matchbox::matchbox_socket::{RtcIceServerConfig, WebRtcSocket};
 use matchbox_signaling::SignalingServer;
 
-/// Longest wait.
+/// Longest wait for an expected event.
 const PATIENCE: Duration = Duration::from_secs(30);
 const STEP: Duration = Duration::from_millis(2);
 
@@ -85,7 +85,7 @@ fn packets_reach_the_member_they_are_for_and_name_their_sender() {
         assert_eq!(others(member, 2), expected);
     }
 
-    // Packets may be lost: they are sent until they arrive.
+    // Packets may be lost, so they are sent until one arrives.
     let [a, b, c] = &mut members;
     let found = until("a packet", || {
         a.send(b"to b", &addresses[1]);
@@ -93,7 +93,7 @@ fn packets_reach_the_member_they_are_for_and_name_their_sender() {
     });
     assert_eq!(found, (addresses[0], b"to b".to_vec()));
     assert_eq!(c.receive(), None, "a packet for b");
-    // Other rooms, and addresses without a member, get nothing.
+    // Packets from another room and packets to an address without a member arrive nowhere.
     stranger.send(b"from outside", &addresses[2]);
     a.send(b"nowhere", &Address::nowhere());
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).expect("a short address"));
@@ -140,7 +140,7 @@ fn a_room_without_a_server_is_closed() {
     assert!(member.others().is_empty());
 }
 
-/// Players add their inputs to a sum.
+/// A game in which players add their inputs to a sum.
 struct Sum(u64);
 
 impl Game for Sum {
@@ -185,7 +185,7 @@ impl Game for Sum {
     }
 }
 
-/// Plays a match in one thread, and returns the replays.
+/// Plays a match of two peers in one thread. Returns their replays.
 fn play<T: Transport>(peers: [Peer<Sum, T>; 2], ticks: u64) -> Vec<Vec<u8>> {
     let start = Instant::now();
     let mut peers = peers;

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
-//! The first player in the room opens the match, and a bot provides the inputs. FILE is a replay of the sandbox, equal
-//! to that of a web page. The program prints a line of JSON when it is in the room, and one at the end. Exit codes: 0
-//! the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! The first player in the room opens the match. A bot provides the inputs. FILE is a replay of the sandbox, equal to
+//! that of a web page. The program prints a line of JSON when it has entered the room, and one at the end. Exit codes:
+//! 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -26,13 +26,13 @@ use serde_json::json;
 
 const SEATS: u8 = 4;
 
-/// The whole state is the world.
+/// The game. Its whole state is the world.
 struct Push {
     world: World,
     players: Vec<BodyId>,
 }
 
-/// The ground, the players, the crates.
+/// Commands that add the ground, the players and the crates.
 fn setup() -> Result<Vec<Command>, WorldError> {
     let ground = ShapeDef::new(Polygon::rectangle(fx!(8), fx!(1))?).friction(fx!(0.8));
     let ball = ShapeDef::new(Geometry::circle(fx!(0.6))?).density(fx!(3));
@@ -48,7 +48,7 @@ fn setup() -> Result<Vec<Command>, WorldError> {
 }
 
 impl Push {
-    /// Bits of an input: left, right, up.
+    /// Commands for the inputs. The bits of an input are left, right and up.
     fn commands(&self, inputs: &[u8]) -> Vec<Command> {
         let command = |(&body, &input): (&BodyId, &u8)| {
             let state = self.world.body(body)?;
@@ -86,7 +86,7 @@ impl Game for Push {
     }
     fn step(&mut self, inputs: &[u8]) {
         for command in self.commands(inputs) {
-            // Players are never removed, so no command is refused.
+            // No command is refused, because players are never removed.
             let _ = self.world.execute(&command);
         }
         self.world.step();
@@ -120,7 +120,7 @@ struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// The secret of an identity as bytes, from which the relay makes the address.
+/// The secret of an identity as bytes. The relay makes the address from such a secret.
 fn secret(me: &PeerIdentity) -> [u8; 16] {
     let mut bytes = [0; 16];
     for (to, from) in bytes.chunks_mut(8).zip(me.secret) {
@@ -132,7 +132,7 @@ fn secret(me: &PeerIdentity) -> [u8; 16] {
 /// Opens the match, or joins it if another member is in the room.
 fn enter(arguments: &Arguments) -> Result<Peer<Push, Relay>, Box<dyn Error>> {
     let me = PeerIdentity::random();
-    // The relay must not know the secret of the handshake.
+    // The relay gets another secret, because it must not know the secret of the handshake.
     let relay = Relay::connect(&arguments.relay, &arguments.code, secret(&PeerIdentity::random()))?;
     let options = PeerOptions::rollback();
     Ok(match relay.others().first().cloned() {
@@ -166,7 +166,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     while peer.status() != Some(Status::Closed) {
         peer.update(SystemTime::now().duration_since(UNIX_EPOCH)?.saturating_sub(start))?;
         while peer.is_due() {
-            // Left and right in turn, and a jump now and then.
+            // The bot moves left and right in turn, and jumps now and then.
             let tick = peer.tick();
             let jump = if tick % 90 < 2 { 4 } else { 0 };
             let input = if tick / 40 % 2 == 0 { 1 } else { 2 };

@@ -14,17 +14,17 @@ use tungstenite::{Message, WebSocket, client::client_with_config};
 
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
 
-/// Longest attempt to connect to an address, and longest read or write of the handshake.
+/// Longest attempt to connect to an address. Also the longest read or write during the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
-/// First pause before connecting again, which doubles with each failure.
+/// First pause before connecting again. The pause doubles after each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
 /// Longest pause before connecting again.
 const PAUSE_MAX: Duration = Duration::from_secs(8);
 /// Largest frame from the relay in bytes.
 const FRAME_MAX: usize = 64 * 1024;
-/// Close code: another connection of this member has replaced this one.
+/// Close code of the relay: a newer connection of this member has replaced the connection.
 const REPLACED: u16 = 4003;
-/// Bytes that may wait to be sent. Further datagrams are dropped.
+/// Maximum number of bytes that wait to be sent. Further datagrams are dropped.
 const WRITE_MAX: usize = 512 * 1024;
 
 /// Reason why a relay cannot be used.
@@ -68,11 +68,12 @@ enum State {
     Open(Box<Socket>),
     /// A background thread is connecting.
     Connecting(Receiver<(Socket, Members)>),
-    /// Another connection has replaced this one.
+    /// A newer connection of this member has replaced this one.
     Closed,
 }
 
-/// A member of a room of a relay. A lost connection is opened again in the background; datagrams are lost meanwhile.
+/// A member of a room of a relay. A lost connection is opened again in the background. Datagrams are lost in the
+/// meantime.
 ///
 /// ```no_run
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -104,8 +105,8 @@ impl fmt::Debug for Relay {
 }
 
 impl Relay {
-    /// Enters a room, and creates it if needed. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits and `-`, and
-    /// `secret` 16 random bytes, which determine the address. Blocks until the relay has answered; each attempt to
+    /// Enters a room, and creates it if needed. `url` is `ws://HOST:PORT`. `code` has 1 to 32 letters, digits and `-`.
+    /// `secret` has 16 random bytes, which determine the address. Blocks until the relay has answered. Each attempt to
     /// connect, read or write takes at most 5 s.
     ///
     /// # Errors
@@ -141,7 +142,7 @@ impl Relay {
         matches!(self.state, State::Open(_))
     }
 
-    /// Whether another connection with this secret has replaced this one, which is then not opened again.
+    /// Whether a newer connection with this secret has replaced this one. This connection is then not opened again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         matches!(self.state, State::Closed)
@@ -159,7 +160,7 @@ impl Relay {
         }
     }
 
-    /// Connects again in another thread.
+    /// Connects again in another thread, until an attempt succeeds.
     fn reconnect(&mut self) {
         let (sender, receiver) = channel();
         let target = self.target.clone();
@@ -169,7 +170,7 @@ impl Relay {
                 thread::sleep(pause);
                 let opened = open(&target);
                 if let Ok(opened) = opened {
-                    // Without a receiver, the member was dropped.
+                    // This fails if the member was dropped, because the receiver is then gone.
                     let _ = sender.send(opened);
                     return;
                 }
@@ -179,7 +180,7 @@ impl Relay {
         self.state = State::Connecting(receiver);
     }
 
-    /// The socket, if connected.
+    /// The socket, if there is a connection. Takes the new connection if the thread has opened one.
     fn socket(&mut self) -> Option<&mut Socket> {
         if let State::Connecting(receiver) = &self.state {
             match receiver.try_recv() {
@@ -198,7 +199,7 @@ impl Relay {
     }
 }
 
-/// Opens a connection, and waits for the members of the room.
+/// Opens a connection. Returns the socket and the members of the room.
 fn open(target: &Target) -> Result<(Socket, Members), String> {
     let stream = connect(&target.host).map_err(|error| error.to_string())?;
     let config = WebSocketConfig::default()
@@ -241,7 +242,7 @@ fn connect(host: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Whether the connection survives an error.
+/// Whether the connection can still be used after this error.
 fn is_passing(error: &tungstenite::Error) -> bool {
     match error {
         tungstenite::Error::Io(error) => {
@@ -277,7 +278,7 @@ impl Transport for Relay {
                 Ok(Message::Close(Some(frame))) if u16::from(frame.code) == REPLACED => {
                     self.state = State::Closed;
                 }
-                // Pings are answered by the next read or write.
+                // A ping needs no action here: the next read or write answers it.
                 Ok(_) => {}
                 Err(error) if is_passing(&error) => return None,
                 Err(_) => self.reconnect(),

@@ -2,16 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Bytes of the address of a member.
+/// Length of the address of a member in bytes.
 pub const ADDRESS_BYTES: usize = 8;
 
-/// Bytes of the secret that a client sends first.
+/// Length in bytes of the secret that a client sends first.
 pub(crate) const SECRET_BYTES: usize = 16;
 
 /// Address of a member of a room.
 pub(crate) type Member = [u8; ADDRESS_BYTES];
 
-/// A datagram after the address of its receiver (to the relay) or sender (from it).
+/// A frame: an address and a datagram. To the relay, it is the address of the receiver; from the relay, that of the
+/// sender.
 pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ADDRESS_BYTES + datagram.len());
     bytes.extend_from_slice(&member);
@@ -23,12 +24,12 @@ pub(crate) fn unframe(bytes: &[u8]) -> Option<(Member, &[u8])> {
     bytes.split_first_chunk::<ADDRESS_BYTES>().map(|(member, datagram)| (*member, datagram))
 }
 
-/// Text frame with the members of the room, sent at the beginning and after every change.
+/// Contents of the text frame with the members of the room. It is sent at the beginning and after every change.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Members {
-    /// Receiver of this frame.
+    /// Address of the member that receives this frame.
     pub(crate) you: String,
-    /// Other members in order of arrival.
+    /// Addresses of the other members, in order of arrival.
     pub(crate) others: Vec<String>,
 }
 

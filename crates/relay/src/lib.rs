@@ -3,7 +3,7 @@
 //! Browsers cannot open UDP sockets, and some networks allow only HTTP. The relay forwards datagrams between the
 //! members of a room without reading their contents. `README.md` has the protocol.
 //!
-//! - [`Server`] is the relay, which the binary `lockstep2d-relay` runs.
+//! - [`Server`] is the relay. The binary `lockstep2d-relay` runs it.
 //! - [`Relay`] is a member of a room: a [`Transport`](lockstep2d::peer::Transport) for native peers.
 
 mod client;

@@ -10,7 +10,7 @@ use lockstep2d::session::Address;
 use lockstep2d_relay::{Limits, Relay, RelayError, Server};
 use tungstenite::Message;
 
-/// Longest wait.
+/// Longest wait for an expected event.
 const PATIENCE: Duration = Duration::from_secs(20);
 const STEP: Duration = Duration::from_millis(2);
 
@@ -69,7 +69,7 @@ fn receive(relay: &mut Relay) -> (Address, Vec<u8>) {
     until("a datagram", || relay.receive())
 }
 
-/// Reads until the other members of the room are `others`.
+/// Updates the relay until the other members of its room are `others`.
 fn until_others(relay: &mut Relay, others: &[Address]) {
     until("the members", || {
         assert_eq!(relay.receive(), None);
@@ -93,7 +93,7 @@ fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
     let mut found = [receive(&mut b), receive(&mut b)];
     found.sort_by_key(|(_, bytes)| bytes.clone());
     assert_eq!(found, [(*c.own(), b"also".to_vec()), (*a.own(), b"to b".to_vec())]);
-    // Other rooms, and addresses without a member, get nothing.
+    // Datagrams from another room and datagrams to an address without a member arrive nowhere.
     stranger.send(b"from outside", &to);
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).unwrap());
     a.send(b"last", &to);
@@ -112,13 +112,13 @@ fn a_member_that_connects_again_has_its_address() {
     let mut a = server.enter("room", 1);
     let old = server.enter("room", 2);
     let address = *old.own();
-    // The old connection is still there, as after a change of networks.
+    // The old connection is not closed first, as after a change of networks.
     let mut new = server.enter("room", 2);
     assert_eq!(*new.own(), address);
     until_others(&mut a, std::slice::from_ref(&address));
     a.send(b"hello", &address);
     assert_eq!(receive(&mut new), (*a.own(), b"hello".to_vec()));
-    // The old connection does not replace the new one in turn.
+    // The old connection ends, and does not replace the new one in turn.
     let mut old = old;
     until("the end", || {
         assert_eq!(old.receive(), None);
@@ -146,9 +146,9 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
         b.receive()
     });
     assert_eq!(found, (*a.own(), b"again".to_vec()));
-    // The member that did not return is not listed.
+    // The member that did not return is no longer listed.
     until("the members", || {
-        // The datagram may have been sent repeatedly.
+        // Reads, so that the lists are updated. The datagram may have been sent several times.
         let _ = (a.receive(), b.receive());
         (a.others() == [to] && b.others() == [*a.own()]).then_some(())
     });
@@ -166,7 +166,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     let server = Running::start(limits);
     let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
     let to = *b.own();
-    // More than the system's buffers and the queue hold.
+    // Sends more than the buffers of the system and the queue can hold.
     let count = 20_000_u32;
     for number in 0..count {
         let mut datagram = vec![0; 1000];
@@ -177,10 +177,10 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
             thread::sleep(STEP);
         }
     }
-    // The last datagram arrives, although b has not read before.
+    // The last datagram arrives, although `b` has read nothing so far.
     let mut numbers = Vec::new();
     until("the newest datagram", || {
-        // A datagram is also lost if the sender's buffer is full.
+        // The datagram is sent repeatedly, because it is also lost if the sender's buffer is full.
         a.send(&u32::MAX.to_le_bytes(), &to);
         while let Some((_, bytes)) = b.receive() {
             numbers.push(u32::from_le_bytes(*bytes.first_chunk().unwrap()));
@@ -239,7 +239,7 @@ fn limits_close_connections() {
 fn a_silent_member_is_disconnected_and_one_that_answers_pings_is_not() {
     let server = Running::start(Limits { idle: Duration::from_millis(300), ..Limits::default() });
     let mut a = server.enter("room", 1);
-    // This member answers no ping.
+    // This member does not read, so it answers no ping.
     let silent = server.enter("room", 2);
     until_others(&mut a, std::slice::from_ref(silent.own()));
     until_others(&mut a, &[]);

@@ -7,7 +7,7 @@ const SCALE_MIN: f64 = 1e-8;
 /// Largest scale, in pixels per metre: a micrometre per pixel.
 const SCALE_MAX: f64 = 1e6;
 
-/// Distance of clipping from the visible area, in pixels: strokes have a width.
+/// Distance in pixels between the visible area and the area to which lines are clipped, because strokes have a width.
 const MARGIN: f64 = 16.0;
 
 /// Visible part of a world, without rotation: y points up in the world and down on the screen.
@@ -27,7 +27,7 @@ const MARGIN: f64 = 16.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World point in the middle of the area, in fixed point for precision far from the origin.
+    /// World point in the middle of the area. It is in fixed point, so that it is precise far from the origin.
     pub centre: Vec2<Fx>,
     /// Pixels per metre.
     pub scale: f64,
@@ -38,7 +38,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Fits a window of the world into an area of the screen, with its upper left corner and size in pixels.
+    /// Fits a window of the world into an area of the screen. The area is given by its upper left corner and its size
+    /// in pixels.
     #[must_use]
     pub fn new(window: Aabb, corner: [f32; 2], size: [f32; 2]) -> Self {
         let [width, height] = size.map(|side| f64::from(side.max(1.0)));
@@ -52,7 +53,7 @@ impl Camera {
     /// Converts a world point to screen coordinates.
     #[must_use]
     pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
-        // The difference needs more than the 24 bits of an `f32`.
+        // The difference is computed first, because coordinates need more than the 24 bits of an `f32`.
         let x = difference(point.x, self.centre.x) * self.scale;
         let y = difference(point.y, self.centre.y) * self.scale;
         [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]
@@ -64,7 +65,7 @@ impl Camera {
         (metres(length) * self.scale) as f32
     }
 
-    /// Converts screen coordinates to a world point, saturating.
+    /// Converts screen coordinates to a world point. Saturates at the range of world coordinates.
     #[must_use]
     pub fn point(&self, [x, y]: [f32; 2]) -> Vec2<Fx> {
         let x = (f64::from(x) - self.middle[0]) / self.scale;
@@ -81,7 +82,7 @@ impl Camera {
         self.centre = self.point([left as f32, up as f32]);
     }
 
-    /// Multiplies the scale by a factor, about a screen position.
+    /// Multiplies the scale by a factor. The world point at the screen position `about` stays there.
     pub fn zoom(&mut self, factor: f32, about: [f32; 2]) {
         let fixed = self.point(about);
         self.scale = (self.scale * f64::from(factor)).clamp(SCALE_MIN, SCALE_MAX);
@@ -97,7 +98,7 @@ impl Camera {
         beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
     }
 
-    /// Whether the bounding box of screen positions is visible, or at most 16 pixels outside.
+    /// Whether the bounding box of screen positions is visible, or at most 16 pixels outside of the visible area.
     #[must_use]
     pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
         let beyond = |axis: usize| {
@@ -111,7 +112,8 @@ impl Camera {
     }
 
     /// Clips a line to the visible area and 16 pixels around it (Liang and Barsky, "A New Concept and Method for Line
-    /// Clipping", 1984): other coordinates may be too large for a rasteriser. Returns `None` if it lies outside.
+    /// Clipping", 1984), because coordinates further away may be too large for a rasteriser. Returns `None` if the line
+    /// lies outside.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {

@@ -1,7 +1,7 @@
 //! [`glyph`]: the glyphs of a bitmap font.
 //!
-//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. Some others are replaced by similar
-//! ones, and the rest is drawn as a hollow box.
+//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. Some other characters are replaced by
+//! similar ones. The rest is drawn as a hollow box.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
@@ -10,14 +10,14 @@ use crate::text::{CELL_HEIGHT, CELL_WIDTH};
 const WEIGHT: FontWeight = FontWeight::Regular;
 const SIZE: RasterHeight = RasterHeight::Size16;
 
-/// Width of a glyph in pixels: a text cell at scale 1.
+/// Width of a glyph in pixels. It is the width of a text cell at scale 1.
 pub const GLYPH_WIDTH: usize = get_raster_width(WEIGHT, SIZE);
-/// Height of a glyph in pixels: a text cell at scale 1.
+/// Height of a glyph in pixels. It is the height of a text cell at scale 1.
 pub const GLYPH_HEIGHT: usize = SIZE.val();
 
 const _: () = assert!(GLYPH_WIDTH as f32 == CELL_WIDTH && GLYPH_HEIGHT as f32 == CELL_HEIGHT);
 
-/// Coverage of each pixel, from 0 to 255, in rows from top to bottom.
+/// Coverage of each pixel of a glyph, from 0 to 255, in rows from top to bottom.
 pub type Glyph = [[u8; GLYPH_WIDTH]; GLYPH_HEIGHT];
 
 /// Glyph of a character.
@@ -31,7 +31,7 @@ pub fn glyph(character: char) -> Glyph {
     glyph
 }
 
-/// Replaces a character that the font lacks by a similar one, if there is one.
+/// Returns a similar character for one that the font lacks. If there is none, returns the character itself.
 fn nearest(character: char) -> char {
     match character {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',

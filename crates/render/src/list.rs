@@ -2,7 +2,7 @@
 
 use crate::colour::Colour;
 
-/// Range of the points of an [`Item`], read by [`DrawList::points`].
+/// Range of the points of an [`Item`]. [`DrawList::points`] returns the points.
 ///
 /// ```
 /// use lockstep2d_render::{Colour, DrawList, Points};
@@ -23,7 +23,7 @@ pub struct Points {
 /// Convex polygon or line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// Corners.
+    /// Range of the corners.
     pub points: Points,
     /// Colour of the inside.
     pub fill: Colour,

@@ -9,7 +9,7 @@ use crate::list::DrawList;
 use crate::paint::{Brush, paint};
 use crate::text::{CELL_WIDTH, width_of};
 
-/// Colour of the scale bar, and of the legend except names of styles.
+/// Colour of the scale bar and of the legend, except for the names of styles.
 const INK: Colour = Colour::hex(0x222222);
 /// Background colour of the legend.
 const WHITE: Colour = Colour::hex(0xffffff);
@@ -17,15 +17,15 @@ const WHITE: Colour = Colour::hex(0xffffff);
 const LINE: f32 = 17.0;
 /// Margin around the legend, in pixels.
 const MARGIN: f32 = 8.0;
-/// Typical length of the figures, in characters.
+/// Typical number of characters of the figures in the legend.
 const FIGURES: usize = 100;
-/// Length of the hash, in characters.
+/// Number of characters of the hash.
 const HASH: usize = 34;
-/// Typical length of a style's name, in characters.
+/// Typical number of characters of a style's name.
 const NAME: usize = 12;
 
-/// Draws a world like `lockstep2d::draw::svg`: its visible part, a scale bar, and above them the legend, wrapped to the
-/// width.
+/// Draws a world like `lockstep2d::draw::svg`: its visible part, and a scale bar. Above them is the legend, wrapped to
+/// the width.
 pub fn page(list: &mut DrawList, world: &World, view: &View) {
     let size = [view.width.clamp(64, 16384) as f32, view.height.clamp(64, 16384) as f32];
     let window = match view.frame {
@@ -33,7 +33,7 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
         Frame::Window(window) => window,
     };
     let mut found = primitives(world, view.layers);
-    // A stable sort keeps the primitives of a style in slot order.
+    // The sort is stable, so the primitives of a style stay in slot order.
     found.sort_by_key(|primitive| primitive.style);
     let top = height_of_legend(view, size[0]).min(size[1] / 2.0);
     let camera = Camera::new(window, [0.0, top], [size[0], size[1] - top]);
@@ -48,12 +48,12 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
         }
     }
     add_bar(list, &camera, size);
-    // Covers primitives above the picture area.
+    // Covers the parts of primitives above the picture area.
     list.rectangle([0.0, 0.0], [size[0], top], WHITE);
     add_legend(list, &Legend::of(world, styles), &view.title, size[0]);
 }
 
-/// Height of the legend, from typical lengths: it is equal in all frames of an animation.
+/// Height of the legend. It is computed from typical lengths, so that it is equal in all frames of an animation.
 fn height_of_legend(view: &View, width: f32) -> f32 {
     let columns = ((width - 2.0 * MARGIN) / CELL_WIDTH).max(1.0) as usize;
     let title = view.title.chars().count().next_multiple_of(8);
@@ -62,11 +62,11 @@ fn height_of_legend(view: &View, width: f32) -> f32 {
     lines as f32 * LINE + MARGIN
 }
 
-/// Title and figures, and below them the hash with the names of the visible styles.
+/// Adds the title and figures, and below them the hash with the names of the visible styles.
 fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     let mut pen = Pen { at: [MARGIN, 2.0], width };
     if !title.is_empty() {
-        // Two offset copies look bold: the font has one weight.
+        // The font has one weight, so bold text is drawn as two offset copies.
         let title = format!("{title} · ");
         list.text([pen.at[0] + 0.6, pen.at[1]], 1.0, INK, title.clone());
         pen.write(list, &title, INK);
@@ -81,7 +81,7 @@ fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     }
 }
 
-/// Text from left to right, wrapped at the width.
+/// Writes text from left to right, wrapped at the width.
 struct Pen {
     at: [f32; 2],
     width: f32,

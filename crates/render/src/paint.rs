@@ -10,13 +10,13 @@ use crate::camera::Camera;
 use crate::colour::Colour;
 use crate::list::DrawList;
 
-/// Length of a direction, in pixels, for marks of full size.
+/// Length of a direction mark at full size, in pixels.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// Mean half size of shapes, in pixels, below which marks shrink, to stay smaller than a typical body.
+/// Mean half size of shapes, in pixels. Below it, marks shrink so that they stay smaller than a typical body.
 const LARGE: f32 = 24.0;
 /// Smallest scale of marks.
 const SCALE_MIN: f32 = 1.0 / 6.0;
-/// Mean half size of shapes, in pixels, below which labels would overlap and are left out.
+/// Mean half size of shapes, in pixels. Below it, labels are left out, because they would overlap.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
 /// Corners of a point mark, which looks like a disc.
@@ -34,7 +34,7 @@ const OCTAGON: [[f32; 2]; 8] = {
     ]
 };
 
-/// Radius, in pixels, below which a mark has every other corner.
+/// Radius, in pixels. Below it, a mark has only every other corner.
 const TINY: f32 = 1.5;
 
 /// Settings for painting a picture.
@@ -58,9 +58,9 @@ const TINY: f32 = 1.5;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
-    /// Scale of marks and line widths, from 1/6 to 1, smaller for small bodies.
+    /// Scale of marks and line widths, from 1/6 to 1. It is smaller for small bodies.
     pub marks: f32,
-    /// Colour that replaces all others, for a world over another one.
+    /// Colour that replaces all others, to draw a world over another one.
     pub tint: Option<Colour>,
 }
 
@@ -98,7 +98,7 @@ pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush:
     painted(list, primitive, camera, brush, Look::of(primitive.style, brush));
 }
 
-/// Draws a primitive in the given colours: its inside, if its style has one, and its lines.
+/// Draws a primitive in the given colours. `inside` is used if its style has a filled inside.
 pub fn filled(list: &mut DrawList, primitive: &Primitive, camera: &Camera, inside: Colour, lines: Colour) {
     let brush = Brush::default();
     let look = Look::of(primitive.style, &brush);
@@ -212,7 +212,8 @@ fn disc([x, y]: [f32; 2], radius: f32, sides: u32) -> impl Iterator<Item = [f32;
     })
 }
 
-/// Sides of a circle that looks round: up to a radius of 1000 pixels, chords are at most a third of a pixel off.
+/// Number of sides of a circle that looks round. Up to a radius of 1000 pixels, the sides are at most a third of a
+/// pixel away from the circle.
 fn sides_of(radius: f32) -> u32 {
     (radius.max(0.0).sqrt() * 4.5).clamp(8.0, 128.0) as u32
 }
@@ -222,7 +223,7 @@ fn rounded(vertices: &[Vec2<Fx>], radius: Fx, camera: &Camera) -> Vec<[f32; 2]> 
     let radius = camera.length(radius);
     let corners: Vec<[f32; 2]> = vertices.iter().map(|&vertex| camera.place(vertex)).collect();
     let count = corners.len();
-    // With y pointing up, a counter-clockwise polygon stays counter-clockwise.
+    // Here y points up, so that a counter-clockwise polygon stays counter-clockwise.
     let direction = |from: [f32; 2], to: [f32; 2]| (from[1] - to[1]).atan2(to[0] - from[0]);
     let sides = sides_of(radius) as f32;
     let mut outline = Vec::new();

@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (120, 80);
 const WHITE: Colour = Colour::hex(0xffffff);
 const THIRTY: Pace = Pace { ticks: 2, tick_rate: 60 };
 
-/// Few colours: a moving square, and text.
+/// A picture with few colours: a moving square, and text.
 fn flat(frame: u32) -> Image {
     let mut list = DrawList::default();
     list.rectangle([0.0, 60.0], [120.0, 20.0], Colour::hex(0xdddcd6));
@@ -38,7 +38,7 @@ fn a_png_is_the_image() {
     }
 }
 
-/// Pictures that a decoder shows, and durations in hundredths of a second.
+/// The pictures that a decoder shows, with their durations in hundredths of a second.
 fn decoded_gif(bytes: &[u8]) -> Vec<(Vec<[u8; 3]>, u16)> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::RGBA);
@@ -75,7 +75,7 @@ fn rgb(image: &Image) -> Vec<[u8; 3]> {
 
 #[test]
 fn a_gif_of_few_colours_is_exact() {
-    // The last frame has no change.
+    // The last frame is equal to the one before.
     let images: Vec<Image> = (0..30).map(|frame| flat(frame.min(28))).collect();
     let bytes = gif_of(&images, THIRTY);
     let frames = decoded_gif(&bytes);
@@ -147,7 +147,7 @@ fn a_gif_of_many_colours_is_close() {
     }
 }
 
-/// Pictures that a decoder shows, and durations in seconds as fractions.
+/// The pictures that a decoder shows, with their durations in seconds as fractions.
 fn decoded_apng(bytes: &[u8]) -> Vec<(Vec<u8>, (u16, u16))> {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
     let count = reader.info().animation_control().unwrap().num_frames;
@@ -210,7 +210,7 @@ fn what_is_no_animation_is_refused() {
     assert!(Animation::apng(Vec::new(), THIRTY, 0).finish().is_err());
 }
 
-/// A full disk after this number of bytes.
+/// A writer that fails as on a full disk, after this number of bytes.
 struct Full(usize);
 
 impl std::io::Write for Full {

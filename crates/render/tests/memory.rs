@@ -1,4 +1,5 @@
-//! Writing an animation takes bounded memory. In a separate binary, no other test adds to the peak of the process.
+//! Writing an animation takes bounded memory. This is a binary of its own, so that no other test adds to the peak of
+//! the process.
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]

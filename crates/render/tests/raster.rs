@@ -21,7 +21,7 @@ fn played(name: &str, ticks: u64) -> Sandbox {
     game
 }
 
-/// Whether a colour is the blend of two others, up to 2 per channel.
+/// Whether a colour is the blend of two others. The tolerance is 2 per channel.
 fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     let share = f32::from(above.opacity) / 255.0;
     (0..3).all(|channel| {
@@ -43,8 +43,9 @@ fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
         || distances.iter().all(|&distance| distance < -margin)
 }
 
-/// Compares every third pixel in each direction with the primitives: inside exactly one polygon or circle it has its
-/// fill colour, outside all of them that of the paper. Returns the numbers of pixels outside and inside.
+/// Compares every third pixel in each direction with the primitives. A pixel inside of exactly one polygon or circle
+/// must have its fill colour. A pixel outside of all of them must have that of the paper. Returns the numbers of pixels
+/// outside and inside.
 fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32) -> [u32; 2] {
     let outlines = primitives(game.world(), Layers { outlines: true, ..Layers::NONE });
     let mut counts = [0, 0];
@@ -140,7 +141,7 @@ fn a_page_shows_the_same_below_its_legend() {
     for word in ["pyramid", "tick 60 ", "deepest overlap", &hash, "fixed", "asleep"] {
         assert!(words.contains(word), "{word:?} should be in {words:?}");
     }
-    // The scale bar lies on the picture.
+    // The scale bar is left out here, because it lies on the picture.
     let mut bare = DrawList::default();
     for item in list.items().iter().filter(|item| item.stroke != Colour::hex(0x222222)) {
         bare.polygon(list.points(item).to_vec(), item.fill, item.stroke, item.width);
@@ -150,7 +151,7 @@ fn a_page_shows_the_same_below_its_legend() {
     assert!(outside > 1000 && inside > 100, "checked only {outside} pixels outside and {inside} inside");
 }
 
-/// Wide shapes must not overflow the rasteriser.
+/// The shapes of this world are so wide that they could overflow the rasteriser.
 #[test]
 fn a_narrow_window_of_a_wide_world_is_drawn() {
     let game = played("box_stack", 1);

@@ -1,4 +1,4 @@
-//! Builds a setup command by command, and executes each on a world to obtain the handles of bodies.
+//! Builds a setup command by command. Each command is also executed on a world, to obtain the handles of bodies.
 
 use alloc::vec::Vec;
 
@@ -28,14 +28,14 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Creates an empty setup. A game reports invalid settings.
+    /// Creates an empty setup. Invalid settings are accepted here; the game refuses the setup.
     #[must_use]
     pub fn new(config: Config) -> Self {
         let world = World::new(config).unwrap_or_default();
         Builder { setup: SandboxSetup { config, commands: Vec::new() }, world }
     }
 
-    /// Adds any command.
+    /// Adds a command of any kind.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses the command.
@@ -67,7 +67,7 @@ impl Builder {
         }
     }
 
-    /// Adds a body at every position, with the angle of the definition.
+    /// Adds a body at every position. All have the angle of the definition.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses a body.
@@ -106,7 +106,7 @@ impl Builder {
     }
 }
 
-/// Builds a scene of this crate, all of which are valid.
+/// Builds a scene of this crate. Panics if the world refuses a command, because all scenes are valid.
 pub(super) fn build(
     config: Config,
     fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,

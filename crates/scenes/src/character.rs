@@ -45,11 +45,11 @@ fn pill() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(0), fx!(-0.4)), Vec2::new(fx!(0), fx!(0.4)), fx!(0.3))?)
 }
 
-/// Horizontal speed in m/s, from the given tick on.
+/// Horizontal speeds in m/s, each with the tick from which it applies.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(-8)), (120, fx!(3)), (300, fx!(6)), (600, fx!(-6)), (880, fx!(0))];
 
-/// Jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the steps.
+/// Ticks of the jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the steps.
 const JUMPS: [u64; 5] = [100, 330, 440, 520, 700];
 
 fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
@@ -71,11 +71,11 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(store_state(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// Lowest bit of the body's user data: whether the character is on ground. The other bits are those of the upward
+/// Lowest bit of the body's user data: whether the character is on ground. The other bits are those of its upward
 /// speed.
 const ON_GROUND: u64 = 1;
 
-/// Reads the state from the body and its user data.
+/// Reads the state of the character from the body and its user data.
 fn recall(body: &Body) -> MoverState {
     let upwards = Fx::from_ne_bytes((body.user_data() & !ON_GROUND).to_ne_bytes());
     MoverState { velocity: Vec2::new(Fx::ZERO, upwards), ..MoverState::at(body.position()) }

@@ -34,7 +34,8 @@ pub(super) const DRUM: Scene =
     })
     .golden(300);
 
-/// A ring of 36 plates between 10 and 11 m, which overlap by one degree, and 4 paddles inside.
+/// Shapes of the drum: a ring of 36 plates with radii from 10 to 11 m, which overlap by one degree, and 4 paddles
+/// inside.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {
@@ -71,8 +72,8 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6 ticks a body is spawned and, with at least 40 dynamic ones, one despawned. Every 50th tick the first one is
-/// kicked.
+/// Every 6 ticks, a body is spawned. Every 6 ticks, another one is despawned if there are at least 40 dynamic bodies.
+/// Every 50 ticks, the first dynamic body is kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();

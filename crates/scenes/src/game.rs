@@ -39,7 +39,7 @@ pub(super) const GAME: Scene = Scene {
     script: shake,
 };
 
-/// Every 5 s all dynamic bodies are thrown upwards.
+/// Throws all dynamic bodies upwards every 5 s.
 fn shake(tick: u64, game: &Sandbox) -> Vec<Command> {
     if tick == 0 || !tick.is_multiple_of(300) {
         return vec![];

@@ -36,17 +36,17 @@ pub(super) const LONG_ARM: Scene = Scene::new(
     "long_arm",
     600,
     "the same rod with its pin 16 radii of gyration away: 92 m/s on a circle",
-    // 16 radii of gyration: 16 / sqrt(12) m.
+    // The arm is 16 radii of gyration long: 16 / sqrt(12) m.
     |_| rod(fx!(4.618802153517)),
 );
 
-/// A rod of 1 m and 1 kg, pinned `arm` metres from its centre, at 20 rad/s.
+/// A rod of 1 m and 1 kg at 20 rad/s. It is pinned `arm` metres from its centre.
 fn rod(arm: Fx) -> lockstep2d::lockstep::SandboxSetup {
     build(weightless(), |scene| {
         let pivot = scene.spawn(BodyDef::fixed(), &[])?;
         let shape = rectangle(fx!(0.5), fx!(0.02))?;
         let omega = fx!(20);
-        // Radius of gyration of a thin rod: 1 / sqrt(12).
+        // The radius of gyration of a thin rod of 1 m is 1 / sqrt(12) m.
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.288675134595) };
         let body = BodyDef::dynamic().position((arm, fx!(0))).velocity((fx!(0), fx_mul(omega, arm)));
         let rod = scene.spawn(body.angular_velocity(omega).mass(mass), &[ghost(shape)])?;
@@ -90,7 +90,8 @@ fn pin(a: BodyId, b: BodyId) -> JointDef {
     JointDef::new(a, b, Revolute::new())
 }
 
-/// Adds a row of pieces of 1 m from `x` on, pinned to the origin of `start`. Returns the last one.
+/// Adds a row of pieces of 1 m, which begins at `x`. The first piece is pinned to the origin of `start`. Returns the
+/// last piece.
 fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;
@@ -129,7 +130,7 @@ fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint_each(joint, down)?;
     let mut across = Vec::new();
     for (k, pair) in (1..).zip(columns.windows(2)) {
-        // Two fixed discs need no joint.
+        // A joint between two fixed discs is not needed.
         let from = usize::from(is_held(k) && is_held(k - 1));
         across.extend(pair[0].iter().copied().zip(pair[1].iter().copied()).skip(from));
     }

@@ -76,13 +76,13 @@ impl Scene {
         ALL.iter().find(|scene| scene.name == name)
     }
 
-    /// The setup. Only random scenes depend on the seed.
+    /// The setup. The seed matters only for random scenes.
     #[must_use]
     pub fn setup(&self, seed: u64) -> SandboxSetup {
         (self.setup)(seed)
     }
 
-    /// The commands in a tick, given the game before it.
+    /// The commands in a tick. `game` is the state before the tick.
     #[must_use]
     pub fn commands(&self, tick: u64, game: &Sandbox) -> Vec<Command> {
         (self.script)(tick, game)

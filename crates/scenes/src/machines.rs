@@ -21,7 +21,7 @@ pub(super) const SPINNER: Scene = Scene::new(
     "a rotor of 40 m stirs 6076 bodies in a ring that overlap at the start",
     |_| {
         build(Config::default(), |scene| {
-            // The one-sided chain is clockwise: it is solid from the inside.
+            // The points of the one-sided chain are in clockwise order, so that it is solid from the inside.
             let point = |i: i32| {
                 let direction = Rot::from_angle(Angle::from_degrees(Fx::from_num(-i)));
                 Vec2::new(fx!(0), fx!(32)) + direction.apply_wide(Vec2::new(fx!(40), fx!(0)))
@@ -42,7 +42,7 @@ pub(super) const SPINNER: Scene = Scene::new(
 )
 .golden(20);
 
-/// Rows of 92 from the bottom up, with capsules, discs and squares in turn.
+/// Fills the ring with rows of 92 bodies, from the bottom up. Capsules, discs and squares take turns.
 fn fill_ring(scene: &mut Builder) -> Result<(), WorldError> {
     let (a, b) = (Vec2::new(fx!(-0.25), fx!(0)), Vec2::new(fx!(0.25), fx!(0)));
     let capsule = Geometry::capsule(a, b, fx!(0.25))?;
@@ -93,7 +93,8 @@ pub(super) const WASHER: Scene =
     })
     .golden(20);
 
-/// A ring of 36 plates between 16 and 18 m, which overlap by two degrees, and 4 paddles inside.
+/// Shapes of the washer: a ring of 36 plates with radii from 16 to 18 m, which overlap by two degrees, and 4 paddles
+/// inside.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

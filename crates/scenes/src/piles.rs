@@ -55,8 +55,8 @@ fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Unit boxes in rows `i` from the bottom, with boxes `j` from `i` to `base - 1`. Relative to `left`, the left end of
-/// the lowest row, they are at `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2`.
+/// Centres of the unit boxes of a pyramid. Row `i`, counted from the bottom, has the boxes `j` from `i` to `base - 1`.
+/// Relative to `left`, the left end of the lowest row, they are at `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2`.
 fn pyramid_places(left: Vec2<Fx>, base: i32) -> impl Iterator<Item = Vec2<Fx>> {
     let place = move |i: i32, j: i32| {
         left + Vec2::new(Fx::from_num(i + 1) / 2 + Fx::from_num(j - i), Fx::from_num(2 * i + 1) / 2)
@@ -103,7 +103,7 @@ pub(super) const HUNDRED_POLYGONS: Scene =
     })
     .golden(400);
 
-/// The hull of 3 to 8 points between 0.3 and 0.9 m from the origin; every third one is rounded, on average.
+/// The hull of 3 to 8 points at 0.3 to 0.9 m from the origin. On average, every third polygon is rounded.
 pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
     loop {
         let corners = rng.below(6) + 3;
@@ -114,7 +114,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
             })
             .collect();
         let rounding = if rng.below(3) == 0 { rng.range(fx!(0.02), fx!(0.1)) } else { Fx::ZERO };
-        // Slivers are hard to see.
+        // Thin polygons are drawn again, because they are hard to see.
         let wide_enough = |polygon: &Polygon| {
             polygon.vertices().iter().zip(polygon.normals()).all(|(&vertex, &normal)| {
                 let depth = |other: &Vec2<lockstep2d::math::Length>| -> lockstep2d::math::Length {

@@ -1,4 +1,4 @@
-//! Ragdolls: eleven capsules, held together by hinges with limits, friction and springs (Box2D's "human").
+//! Ragdolls: eleven capsules that are held together by hinges with limits, friction and springs (Box2D's "human").
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,7 +16,7 @@ const GROUND: u64 = 1;
 /// Collision category of ragdolls.
 const RAGDOLL_CATEGORY: u64 = 2;
 
-/// A vertical capsule, and the hinge to its parent. Heights are in metres above the origin of the ragdoll.
+/// A bone: a vertical capsule, and the hinge to its parent. Heights are in metres above the origin of the ragdoll.
 pub(super) struct Bone {
     /// Index of the parent bone.
     pub(super) parent: usize,
@@ -28,7 +28,7 @@ pub(super) struct Bone {
     pivot: Fx,
     /// Limits of the hinge in units of pi.
     limit: (Fx, Fx),
-    /// Scale of the maximum friction torque.
+    /// Factor of the maximum friction torque.
     strength: Fx,
     extra: Extra,
 }
@@ -37,9 +37,9 @@ enum Extra {
     None,
     /// Bone with linear damping.
     Damped,
-    /// Foot: an additional shape with little friction, which collides only with the ground.
+    /// Foot: has an additional shape with little friction, which collides only with the ground.
     Foot,
-    /// Bone with linear damping, whose hinge measures angles from a bend of an eighth of a turn.
+    /// Bone with linear damping. The angle of its hinge is 0 at a bend of an eighth of a turn.
     Bent,
 }
 
@@ -86,7 +86,7 @@ const fn lower_arm(upper: usize) -> Bone {
     )
 }
 
-/// Bones of a ragdoll, with parents before children.
+/// Bones of a ragdoll. Parents come before their children.
 pub(super) const BONES: [Bone; 11] = [
     HIP,
     TORSO,
@@ -109,7 +109,7 @@ impl Bone {
         self
     }
 
-    /// Body definition without a position.
+    /// Body definition, without the position.
     pub(super) fn body(&self) -> BodyDef {
         let damping = match self.extra {
             Extra::Damped | Extra::Bent => fx!(0.1),
@@ -123,7 +123,7 @@ impl Bone {
         place + Vec2::new(fx!(0), self.height)
     }
 
-    /// The shapes of a ragdoll do not collide with each other.
+    /// Shapes of the bone. Shapes of the same ragdoll do not collide with each other.
     pub(super) fn shapes(&self, ragdoll: i32) -> Result<Vec<ShapeDef>, WorldError> {
         let filter = Filter { category: RAGDOLL_CATEGORY, mask: GROUND | RAGDOLL_CATEGORY, group: -ragdoll };
         let (low, high) = (Vec2::new(fx!(0), self.ends.0), Vec2::new(fx!(0), self.ends.1));

@@ -12,12 +12,12 @@ use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{BodyPose, Command, Config};
 
-/// Columns that exist at a time.
+/// Number of columns that exist at a time. The ragdolls of a column are above each other, on all floors.
 const COLUMNS: u64 = 40;
 const FLOORS: u32 = 5;
-/// Ragdolls that fall on a floor in a column.
+/// Number of ragdolls that fall on a floor in a column.
 const GROUP: u32 = 5;
-/// Interval of new columns, in ticks.
+/// Number of ticks between two new columns.
 const INTERVAL: u64 = 8;
 
 pub(super) const RAIN: Scene = Scene {
@@ -47,18 +47,18 @@ pub(super) const RAIN: Scene = Scene {
     },
 };
 
-/// Numbers of the ragdolls of a column, each used once on every floor.
+/// Numbers of the ragdolls of a column. On every floor, one ragdoll has each number.
 const fn ragdolls(column: u32) -> core::ops::Range<u32> {
     column * GROUP..(column + 1) * GROUP
 }
 
-/// User data: number of the ragdoll and index of the bone. The floor has 0.
+/// User data of a bone: the number of the ragdoll and the index of the bone. The user data of the floor is 0.
 fn mark(ragdoll: u32, bone: usize) -> u64 {
     u64::from(ragdoll) * BONES.len() as u64 + bone as u64 + 1
 }
 
-/// Spawns the ragdolls of a column, disabled. Their handles are known one tick later, when [`release`] joins and
-/// enables them.
+/// Spawns the bodies of the ragdolls of a column, disabled. One tick later, when their handles are known, [`release`]
+/// joins and enables them.
 fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     let mut commands = Vec::new();
     for (ragdoll, i) in ragdolls(column).zip(0..) {
@@ -88,7 +88,7 @@ fn release(column: u32, game: &Sandbox) -> Vec<Command> {
         new.into_iter().map(|(id, body)| (body.user_data(), body.position().y, id)).collect();
     waiting.sort_unstable();
     let bodies: Vec<BodyId> = waiting.into_iter().map(|(_, _, id)| id).collect();
-    // The bodies of a ragdoll and bone are adjacent, from the lowest floor up.
+    // Bodies with the same ragdoll number and bone are adjacent, ordered from the lowest floor up.
     let floors = FLOORS as usize;
     for (index, bone) in BONES.iter().enumerate().skip(1) {
         let mut ends = Vec::new();

@@ -1,5 +1,5 @@
-//! A dynamic character that a spring leg holds above the ground. It pushes crates, loads dynamic ground with its
-//! weight, and is carried by moving ground.
+//! A dynamic character that is held above the ground by a spring leg. The character pushes crates, loads dynamic ground
+//! with its weight, and is carried by moving ground.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -57,35 +57,35 @@ fn pill() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(0), fx!(-0.2)), Vec2::new(fx!(0), fx!(0.4)), fx!(0.3))?)
 }
 
-/// The top of the lift goes from the floor to the upper floor and back in 8 s.
+/// Position of the lift. Its top goes from the floor to the upper floor and back in 8 s.
 fn lift_at(tick: u64) -> Vec2<Fx> {
     let phase = Angle::from_turns(Fx::from_num(tick % 480) / 480);
     let rise = fx!(1) - Fx::from(phase.cos());
     Vec2::new(fx!(17.6), rise - fx!(0.2))
 }
 
-/// Height in metres of the centre above the ground at which the leg bears the weight.
+/// Height in metres at which the leg bears the weight: that of the centre of mass above the ground.
 const RIDE_HEIGHT: Fx = fx!(0.9);
-/// Maximum length of the leg in metres, beyond which it exerts no force.
+/// Maximum length of the leg in metres. A longer leg would exert no force.
 const LEG_LENGTH: Fx = fx!(1.1);
 /// Stiffness of the leg, `(2 pi 4 Hz)²`, in 1/s².
 const STIFFNESS: Fx = fx!(632);
 /// Damping of the leg, `2 * 0.7 * 2 pi 4 Hz`, in 1/s.
 const DAMPING: Fx = fx!(35);
-/// Largest acceleration by the leg in m/s².
+/// Largest acceleration that the leg causes, in m/s².
 const PUSH_MAX: Fx = fx!(100);
 /// Largest acceleration along the ground in m/s².
 const DRIVE_MAX: Fx = fx!(25);
-/// Upward speed relative to the ground in m/s above which the leg does not push, because the character is jumping.
+/// Upward speed in m/s, relative to the ground. Above it, the leg does not push, because the character is jumping.
 const LIFT_OFF: Fx = fx!(2);
 
-/// Horizontal speed relative to the ground in m/s, from the given tick on.
+/// Horizontal speeds in m/s, relative to the ground, each with the tick from which it applies.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(3)), (560, fx!(0)), (730, fx!(3)), (900, fx!(-4)), (1150, fx!(0))];
 
 const JUMPS: [u64; 3] = [30, 420, 1000];
 
-/// The force of the leg, its reaction on the ground, and the lift.
+/// Commands of a tick: the force of the leg, its reaction on the ground, and the movement of the lift.
 fn play(tick: u64, world: &World) -> Option<Vec<Command>> {
     let mut bodies = world.bodies().map(|(id, _)| id);
     let (character, lift) = (bodies.next()?, bodies.next()?);
@@ -97,7 +97,7 @@ fn play(tick: u64, world: &World) -> Option<Vec<Command>> {
     Some(commands)
 }
 
-/// A foot narrower than the body is cast down.
+/// Finds the ground by casting a foot, which is narrower than the body, downwards.
 fn foot(world: &World, character: BodyId, body: &Body) -> Option<CastHit> {
     let radius = fx!(0.1);
     let foot = Probe::new(Geometry::circle(radius).ok()?, body.centre_of_mass()).ok()?;
@@ -105,16 +105,16 @@ fn foot(world: &World, character: BodyId, body: &Body) -> Option<CastHit> {
     world.cast_shape(&foot, down, QueryFilter::default().except(character))
 }
 
-/// Pushes the character away from the ground and along it.
+/// Commands that push the character away from the ground, and drive it along the ground.
 fn push(tick: u64, world: &World, (character, body): (BodyId, &Body), hit: &CastHit) -> Option<Vec<Command>> {
     let ground = world.shape(hit.shape)?.body();
     let relative = body.velocity() - world.body(ground)?.velocity_at(hit.point);
     let wanted = SPEEDS.iter().rev().find(|(from, _)| *from <= tick).map_or(Fx::ZERO, |step| step.1);
-    // Carries the weight at the ride height, and pushes only.
+    // The spring carries the weight at the ride height. It pushes but never pulls.
     let shortened = RIDE_HEIGHT - (body.centre_of_mass().y - hit.point.y);
     let spring = fx_mul(STIFFNESS, shortened) - fx_mul(DAMPING, relative.y) - world.config().gravity.y;
     let up = if relative.y > LIFT_OFF { Fx::ZERO } else { spring.clamp(Fx::ZERO, PUSH_MAX) };
-    // Removes a third of the difference to the wanted speed, up to DRIVE_MAX.
+    // Removes a third of the difference to the wanted speed in each tick, with an acceleration of at most DRIVE_MAX.
     let along = ((wanted - relative.x) * 20).clamp(-DRIVE_MAX, DRIVE_MAX);
     let force = Vec2::new(along, up).scale(body.mass());
     let mut commands = vec![Command::ApplyForce { body: character, force, point: body.centre_of_mass() }];

@@ -41,7 +41,7 @@ fn benchmarks_have_the_size_that_they_have_elsewhere() {
     }
 }
 
-/// Executes the script without stepping.
+/// Executes the commands of the script without stepping the world.
 #[test]
 fn forty_columns_of_ragdolls_stand_at_a_time() {
     let mut game = open("rain");

@@ -28,13 +28,13 @@ pub(super) const WATERWORKS: Scene = Scene {
     script: |tick, game| play(tick, game.world()).unwrap_or_default(),
 };
 
-/// Water that fills the pools.
+/// The water in the pools.
 fn water() -> Area {
     Area::fluid(fx!(1)).drag(fx!(2), fx!(2))
 }
 
-/// Two pools that touch, with the surface at height 0. The right one has a current to the right, and wind above it. The
-/// basin is the first body.
+/// Adds two pools that touch, with their surfaces at height 0. The right pool has a current to the right, and wind
+/// above it. The basin must be the first body.
 fn basin(scene: &mut Builder) -> Result<BodyId, WorldError> {
     let wall = |x| Ok::<_, WorldError>(rectangle(fx!(0.5), fx!(4))?.offset((x, fx!(-1))));
     let floor = rectangle(fx!(12), fx!(0.5))?.offset((fx!(0), fx!(-4.5)));
@@ -51,7 +51,7 @@ fn basin(scene: &mut Builder) -> Result<BodyId, WorldError> {
     scene.spawn(BodyDef::fixed(), &shapes)
 }
 
-/// A crank turns a train of wheels, whose last one moves a gate by a rack.
+/// Adds a crank that turns a train of wheels. The last wheel moves a gate by a rack.
 fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
     let wheels = [(fx!(-8), fx!(0.5)), (fx!(-6.5), fx!(1)), (fx!(-5), fx!(0.5))];
     let mut bodies = Vec::new();
@@ -63,7 +63,7 @@ fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
         bodies.push(wheel);
     }
     let mesh = |teeth_a, teeth_b| Gear::new(teeth_a, teeth_b);
-    // All angles are 0, so the wheels are in mesh.
+    // The wheels are in mesh, because all angles are 0.
     scene.joint(JointDef::new(bodies[0], bodies[1], mesh(10, 20)))?;
     scene.joint(JointDef::new(bodies[1], bodies[2], mesh(20, 10)))?;
     let gate = BodyDef::dynamic().position((fx!(-4.5), fx!(6)));
@@ -75,7 +75,7 @@ fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
     scene.joint(rack.angle_a(Angle::QUARTER)).map(|_| ())
 }
 
-/// The heavier bucket pulls up the lighter one until it floats.
+/// Adds two buckets on a pulley. The heavier bucket pulls up the lighter one.
 fn buckets(scene: &mut Builder) -> Result<(), WorldError> {
     let sides = [
         rectangle(fx!(0.5), fx!(0.1))?.offset((fx!(0), fx!(-0.5))),
@@ -90,7 +90,7 @@ fn buckets(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint(joint.colliding()).map(|_| ())
 }
 
-/// Bodies of several densities above the pools, and leaves in the wind.
+/// Adds bodies of several densities above the pools, and leaves in the wind.
 fn floats(scene: &mut Builder) -> Result<(), WorldError> {
     let end = Vec2::new(fx!(0.4), fx!(0));
     let forms = [
@@ -112,7 +112,8 @@ fn floats(scene: &mut Builder) -> Result<(), WorldError> {
     scene.spawn_each(BodyDef::dynamic(), &[leaf], places).map(|_| ())
 }
 
-/// A body without mass, whose velocity no force changes. It passes over the water, and attracts the bodies below.
+/// Adds a body without mass, whose velocity is not changed by forces. It passes over the water, and attracts the bodies
+/// below.
 fn magnet(scene: &mut Builder) -> Result<(), WorldError> {
     let pull = Area::new().attraction(fx!(18), fx!(1), Falloff::Inverse);
     let field = ShapeDef::new(Geometry::circle(fx!(3))?).area(pull);
@@ -121,7 +122,7 @@ fn magnet(scene: &mut Builder) -> Result<(), WorldError> {
     scene.spawn(body, &[field.density(fx!(0)), tray.density(fx!(0))]).map(|_| ())
 }
 
-/// Turns the crank back and forth, makes the left pool denser, and drops the current in the right one.
+/// Turns the crank back and forth, makes the left pool denser, and ends the current in the right pool.
 fn play(tick: u64, world: &World) -> Option<Vec<Command>> {
     let basin = world.bodies().next()?.0;
     let &[left, right, ..] = world.body(basin)?.shapes() else { return None };

@@ -25,7 +25,7 @@ pub(super) const SMASH: Scene =
     })
     .golden(90);
 
-/// Positions in columns from left to right, each from the bottom up.
+/// Positions in columns. The columns go from left to right, and each column from the bottom up.
 pub(super) fn grid(
     columns: i32,
     rows: i32,
@@ -38,7 +38,7 @@ pub(super) fn grid(
     (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
 }
 
-/// Shifts x alternately by `first` and `-first`.
+/// Shifts the x coordinates alternately by `first` and `-first`.
 fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
     places
         .enumerate()
@@ -71,9 +71,9 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Five points on a circle, each a turn divided by the golden ratio after the previous one.
+/// Five points on a circle. Each is a turn divided by the golden ratio after the previous point.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
-    // pi (sqrt(5) - 1).
+    // A turn divided by the golden ratio is pi (sqrt(5) - 1).
     let step = Angle::from_radians(fx!(3.883222077451));
     let mut angle = Angle::ZERO;
     let mut points = Vec::new();
@@ -84,11 +84,11 @@ fn golden_pentagon() -> Result<Polygon, WorldError> {
     Ok(Polygon::hull(&points)?)
 }
 
-/// The pusher is at `x = 60 sin(t / 5)` metres at the time `t` in seconds.
+/// Moves the pusher to `x = 60 sin(t / 5)` metres, where `t` is the time in seconds.
 fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
     let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
     let Some((body, _)) = pusher else { return vec![] };
-    // 300 ticks are one radian.
+    // The phase grows by one radian in 300 ticks.
     let phase = Angle::from_radians(lockstep2d::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
     let position = Vec2::new(fx_mul(fx!(60), widen(phase.sin())), fx!(0));
     vec![Command::MoveTo { body, position, angle: Angle::ZERO }]

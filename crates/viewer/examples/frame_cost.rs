@@ -1,5 +1,5 @@
-//! Measures the mean CPU time of a frame of the scene `large_pyramid` (5051 bodies): filling the draw list and building
-//! its triangles, for several sets of layers.
+//! Measures the mean CPU time of a frame of the scene `large_pyramid` (5051 bodies), for several sets of layers. The
+//! draw list and its triangles are measured separately.
 //!
 //! ```text
 //! cargo run --release -p lockstep2d-viewer --example frame_cost
@@ -65,7 +65,7 @@ fn mean_of(mut make: impl FnMut()) -> f64 {
     time.as_secs_f64() * 1e3 / f64::from(FRAMES)
 }
 
-/// CPU time of this thread: on Linux, with a resolution of a few milliseconds.
+/// CPU time of this thread, with a resolution of a few milliseconds. Only on Linux.
 fn cpu_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split(' ').next()?.parse().ok().map(Duration::from_nanos)

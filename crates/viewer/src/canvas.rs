@@ -43,7 +43,7 @@ impl<'a> Canvas<'a> {
         Canvas { list, camera }
     }
 
-    /// Draw list, in pixels.
+    /// The draw list, whose units are pixels.
     pub fn list(&mut self) -> &mut DrawList {
         self.list
     }
@@ -110,7 +110,8 @@ impl<'a> Canvas<'a> {
         self.bodies(world, |other| (other == id).then_some(colour));
     }
 
-    /// Paints the shapes of all bodies for which `colour` returns a colour, faster than repeated [`Canvas::body`].
+    /// Paints the shapes of all bodies for which `colour` returns a colour. This is faster than many calls of
+    /// [`Canvas::body`].
     pub fn bodies(&mut self, world: &World, colour: impl Fn(BodyId) -> Option<Colour>) {
         let outlines = Layers { outlines: true, ..Layers::NONE };
         for primitive in primitives(world, outlines) {
@@ -122,7 +123,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Paints a primitive of `lockstep2d::draw`, in the colours of its style by default.
+    /// Paints a primitive of `lockstep2d::draw`. If `colour` is `None`, the primitive has the colours of its style.
     pub fn primitive(&mut self, primitive: &Primitive, colour: Option<Colour>) {
         paint(self.list, primitive, self.camera, &Brush { tint: colour, ..Brush::default() });
     }

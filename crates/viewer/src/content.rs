@@ -11,7 +11,7 @@ use crate::source::{OpenError, Snapshot, Source, SourceError};
 #[derive(Clone)]
 pub(crate) struct Content {
     pub(crate) scenes: Vec<Scene>,
-    /// Scene shown at the start; by default, the first.
+    /// Name of the scene that is shown at the start. `None` for the first scene.
     pub(crate) first: Option<String>,
     /// Name of the rules of the game.
     pub(crate) rules: &'static str,
@@ -27,10 +27,10 @@ pub(crate) struct Scene {
     pub(crate) open: OpenScene,
 }
 
-/// Opens a scene with a random seed.
+/// Opens a scene. The argument is the random seed.
 pub(crate) type OpenScene = Rc<dyn Fn(u64) -> Result<Box<dyn Source>, SourceError>>;
 
-/// Opens a replay of the game; the first argument is the name for display.
+/// Opens a replay of the game. The first argument is the name for display.
 pub(crate) type OpenReplay = Rc<dyn Fn(&str, &'static [u8], &Limits) -> Result<Box<dyn Source>, Verdict>>;
 
 impl Content {
@@ -43,7 +43,8 @@ impl Content {
         first.or_else(|| self.scenes.first().map(|scene| scene.name.as_str()))
     }
 
-    /// Opens a replay, the replay in a divergence report, or a snapshot. Their first bytes tell them apart.
+    /// Opens a replay, a divergence report or a snapshot, which differ in their first bytes. Of a report, its replay is
+    /// shown.
     ///
     /// The source borrows the bytes, which stay allocated until the program ends.
     pub(crate) fn open(&self, name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {

@@ -59,7 +59,7 @@ pub(crate) fn run<G: Game + 'static>(viewer: Viewer<G>, arguments: Vec<OsString>
     let matches = match command(&viewer).try_get_matches_from(arguments) {
         Ok(matches) => matches,
         Err(usage) => {
-            // If printing fails, an error message could not be printed, either.
+            // If this fails, an error message could not be printed, either.
             let _printed = usage.print();
             return if usage.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }

@@ -16,7 +16,7 @@ pub enum Event {
     Down(Button),
     /// A pointer button went up.
     Up(Button),
-    /// Notches that the wheel was turned: positive is away from the user.
+    /// Number of notches by which the wheel was turned. Positive if turned away from the user.
     Wheel(f32),
     /// A file was dropped on the window.
     Dropped {
@@ -27,7 +27,7 @@ pub enum Event {
     },
 }
 
-/// Key of the keyboard. A key that prints a character has the character in lower case.
+/// Key of the keyboard. A key that prints a character is named by that character in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// Character that the key produces without Shift.
@@ -50,7 +50,7 @@ pub enum Key {
     PageUp,
     /// The Page Down key.
     PageDown,
-    /// The Enter key, or that of the number pad.
+    /// The Enter key, also that of the number pad.
     Enter,
     /// The Escape key.
     Escape,
@@ -65,7 +65,7 @@ pub enum Key {
 }
 
 impl From<char> for Key {
-    /// The key of a character: the space bar for a space, and ASCII letters without regard to case.
+    /// The key of a character. A space gives the space bar, and ASCII letters are converted to lower case.
     fn from(character: char) -> Self {
         match character {
             ' ' => Key::Space,

@@ -42,7 +42,7 @@
 //! }
 //! ```
 //!
-//! [`App`] is the viewer without a window, clock or files: it receives [`Event`]s and elapsed time, and fills a
+//! [`App`] is the viewer without a window, clock or files. It receives [`Event`]s and elapsed time, and fills a
 //! [`DrawList`].
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 

@@ -1,4 +1,4 @@
-//! [`Script`]: user input in a text file.
+//! [`Script`]: user input from a text file.
 //!
 //! One instruction per line. Empty lines and lines that start with `#` are ignored.
 //!

@@ -90,8 +90,8 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { about: about.into(), ..self }
     }
 
-    /// Adds a playable scene: its name, its description, and its setup for a random seed. The first scene is shown at
-    /// the start, unless [`Viewer::first`] names another.
+    /// Adds a scene that can be played. The arguments are its name, its description, and a function that returns its
+    /// setup for a random seed. The first scene is shown at the start, unless [`Viewer::first`] names another.
     #[must_use]
     pub fn scene(
         mut self,
@@ -104,7 +104,7 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a scene with its own [`Source`], without the players of the viewer.
+    /// Adds a scene with its own [`Source`]. The players of the viewer do not take part in it.
     #[must_use]
     pub fn source(
         mut self,
@@ -123,14 +123,14 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { first: Some(scene.into()), ..self }
     }
 
-    /// Adds a person at the keyboard. In a network match the local player has the keys of all persons.
+    /// Adds a person at the keyboard. In a network match, the local player uses the keys of all persons.
     #[must_use]
     pub fn keys(mut self, controls: Controls<G::Input>) -> Self {
         self.players.push(Player::Keys(controls));
         self
     }
 
-    /// Adds a bot, made from the scene's random seed and the seat number, counted from 0.
+    /// Adds a bot. `bot` makes it from the scene's random seed and the seat number, which counts from 0.
     #[must_use]
     pub fn bot(mut self, bot: impl Fn(u64, usize) -> Bot<G> + 'static) -> Self {
         self.players.push(Player::Bot(Rc::new(bot)));
@@ -172,8 +172,9 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { limits, ..self }
     }
 
-    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the scene of
-    /// `--scene`, or else the first with a setup. `--lockstep`, `--rollback` and `--players` override `options`.
+    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. A match plays the scene of
+    /// `--scene`. Without this argument, it plays the first scene with a setup. `--lockstep`, `--rollback` and
+    /// `--players` override `options`.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {
@@ -182,7 +183,7 @@ impl<G: Game + 'static> Viewer<G> {
 
     /// Runs the program with the arguments of this process, until its window is closed. On a web page, returns at once.
     ///
-    /// The exit code is 0, or 2 for an error, which is printed.
+    /// The exit code is 0, or 2 after an error. The error is printed.
     #[must_use]
     pub fn run(self) -> ExitCode {
         #[cfg(not(target_arch = "wasm32"))]
@@ -191,7 +192,7 @@ impl<G: Game + 'static> Viewer<G> {
         return self.run_on_page();
     }
 
-    /// Runs the program with these arguments, of which the first is the program's name.
+    /// Runs the program with these arguments. The first argument is the program's name.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn run_with<A>(self, arguments: impl IntoIterator<Item = A>) -> ExitCode
@@ -217,7 +218,7 @@ impl<G: Game + 'static> Viewer<G> {
         }
     }
 
-    /// Returns the viewer without a window and a source, for tests and custom windows.
+    /// Returns the viewer without a window and without a source, for tests and custom windows.
     #[must_use]
     pub fn app(&self) -> App {
         App::new(self.content())

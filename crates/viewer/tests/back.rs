@@ -1,4 +1,4 @@
-//! Seeking back shows the same picture as before, in all layers except the broad phase.
+//! After seeking back, the picture is the same as before, in all layers except the broad phase.
 
 use std::path::Path;
 
@@ -8,7 +8,8 @@ use lockstep2d_viewer::{App, Event, Key, LAYER_KEYS};
 
 const TICKS: usize = 100;
 
-/// The drawing of the world, without panels, the timeline and texts of full size, which show the verification.
+/// The drawing of the world. Panels, the timeline and text of full size are left out, because they show the progress of
+/// the verification.
 fn world(app: &mut App) -> DrawList {
     let list = app.draw();
     let mut world = DrawList::default();
@@ -31,8 +32,8 @@ fn press(app: &mut App, key: Key) {
     (0..200).for_each(|_| app.advance(FRAME));
 }
 
-/// Steps forwards, back, and forwards again from the start. Leaves out the broad phase, whose tree depends on how a
-/// tick was reached.
+/// Steps forwards, steps back, and goes forwards again from the start. The broad phase is left out, because its tree
+/// depends on how a tick was reached.
 fn goes_back(mut app: App) {
     app.handle(Event::Resized([900.0, 700.0]));
     LAYER_KEYS

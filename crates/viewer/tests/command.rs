@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 fn viewer(args: &[&str]) -> (Option<i32>, String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d-viewer"));
-    // Without a display, no test opens a window.
+    // There is no display, so that no test opens a window.
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").args(args);
     let Output { status, stdout, stderr } = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -57,7 +57,7 @@ fn it_says_what_is_wrong() {
         (&["--scene", "pyramid"], "no display"),
     ];
     for (args, expected) in cases {
-        // On other systems than Linux, a window needs no environment variable.
+        // Only Linux needs an environment variable for a window.
         if expected == "no display" && !cfg!(target_os = "linux") {
             continue;
         }

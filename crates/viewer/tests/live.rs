@@ -1,4 +1,4 @@
-//! Live worlds: the replay of a session verifies, whatever the user does in it.
+//! Live worlds. The replay of a session verifies, whatever the user does in it.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -68,7 +68,8 @@ fn random_act(rng: &mut Rng, world: &World) -> Act {
     }
 }
 
-/// Plays, acts, seeks and saves at random. Returns how often recorded ticks were dropped and how often a body was held.
+/// Plays, acts, seeks and saves at random. Returns the number of times that recorded ticks were dropped and that a body
+/// was held.
 fn play_about(live: &mut Live, seed: u64, ticks: u64) -> (usize, usize) {
     let rng = &mut Rng::new(seed);
     let (mut played, mut cuts, mut held) = (0, 0, 0);
@@ -108,7 +109,7 @@ fn a_hundred_random_sessions_verify() {
     assert!(cuts > 100 && held > 100, "recording cut {cuts} times, body held {held} times");
 }
 
-/// A tick that is sought again has its earlier hash.
+/// After a seek back, a tick has the same hash as before.
 #[test]
 fn going_back_shows_what_was_there() {
     for seed in 0..6 {
@@ -222,13 +223,13 @@ fn who_goes_back_lets_go() {
         (None, 1),
         "the anchor of that tick should still be there, and nothing held"
     );
-    // The recorded ticks play unchanged. The first live tick removes the abandoned anchor.
+    // The recorded ticks are played unchanged. The first live tick removes the anchor that is left in the world.
     live.act(Act::DragTo(ELSEWHERE));
     play(&mut live, 10);
     assert_eq!((live.recorded(), anchors(&mut live)), (20, 1));
     play(&mut live, 1);
     assert_eq!((live.recorded(), anchors(&mut live)), (21, 0));
-    // An act that cuts the recording removes it, too.
+    // The anchor is also removed by an act that drops recorded ticks.
     live.seek(10).unwrap();
     live.act(Act::Gravity(Vec2::new(fx!(0), fx!(-1))));
     play(&mut live, 2);
@@ -260,7 +261,7 @@ fn only_an_act_that_does_something_cuts_the_recording() {
 fn what_the_world_refuses_breaks_nothing() {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![disc] };
-    // The body limit leaves no room for an anchor.
+    // The body limit leaves no room for the anchor of the grab.
     let config = Config { body_limit: 1, ..Config::default() };
     let mut live = Live::new("full", &SandboxSetup { config, commands: vec![spawn] }).unwrap();
     live.act(Act::Grab(Aim::at(Vec2::ZERO)));

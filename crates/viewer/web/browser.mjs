@@ -91,7 +91,7 @@ export class Browser {
         return result.value;
     }
 
-    // Evaluates an expression in the page until `holds` is true of its value, and returns the value.
+    // Evaluates an expression in the page again and again, until `holds` is true of the value. Returns the value.
     async until(expression, holds, what) {
         const end = Date.now() + TIMEOUT;
         let value;

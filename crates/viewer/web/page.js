@@ -1,11 +1,11 @@
-// Connects the page with the viewer: passes files in, and displays the reports that it logs.
+// Connects the page with the viewer: passes files to the viewer, and displays the reports that the viewer logs.
 //
 // ?file=URL opens a file, ?scene=NAME opens a scene.
 "use strict";
 
 const element = (id) => document.getElementById(id);
 
-// Verdicts, which are shown with a capital.
+// Names of the verdicts. The page shows them with a capital letter.
 const VERDICTS = /\b(match|claim mismatch|diverged|incomplete|malformed|limit exceeded|unverifiable)\b/;
 
 function report([name, tick, ticks, hash, status]) {
@@ -30,7 +30,7 @@ function fail(message) {
     element("verdict").textContent = message;
 }
 
-// Copies bytes into the viewer's memory, like a dropped file in miniquad.
+// Copies bytes into the viewer's memory, as miniquad does with a dropped file.
 function give(bytes) {
     const start = wasm_exports.allocate_vec_u8(bytes.length);
     new Uint8Array(wasm_memory.buffer, start, bytes.length).set(bytes);
@@ -59,7 +59,7 @@ async function showUrl(url) {
     show(url.split("/").pop(), new Uint8Array(await answer.arrayBuffer()));
 }
 
-// miniquad's drop handler assumes that a file name has as many bytes as characters.
+// Replaces miniquad's drop handler, which assumes that a file name has as many bytes as characters.
 window.addEventListener("drop", (event) => {
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -67,7 +67,8 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
 
-// Opens the file or scene of the URL after the viewer's first report: before, it accepts no files.
+// Opens the file or scene of the URL. Called after the viewer's first report, because the viewer accepts no files
+// before.
 let started = false;
 function start() {
     if (started) {
@@ -94,7 +95,7 @@ miniquad_add_plugin({
                 return info(text);
             }
             LINES[kind](fields);
-            // This runs inside a call from the viewer, which cannot be re-entered.
+            // This function runs inside a call from the viewer, which cannot be re-entered. So the start is postponed.
             setTimeout(start);
         };
         imports.env.console_error = (text) => fail(UTF8ToString(text));

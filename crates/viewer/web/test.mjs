@@ -2,7 +2,7 @@
 //
 //     node crates/viewer/web/test.mjs PAGE_DIRECTORY COMMAND SCREENSHOT_DIRECTORY
 //
-// Compares verdicts and hashes of a golden replay and of damaged replays with the command's output.
+// The verdicts and hashes of a golden replay and of damaged replays must agree with the command's output.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createServer } from "node:http";
@@ -68,7 +68,7 @@ async function scrubsAndMatches(browser) {
     assert.equal(state.hash, end, "the final hash should equal the native one");
     assert.ok(state.status.includes(end) && state.status.includes("Match"), "the status should show hash and verdict");
 
-    // Keys: ten single ticks back, to the start, one second and one tick forward.
+    // Presses keys: ten single ticks back, to the start, then one second and one tick forward.
     for (let back = 1; back <= 10; back++) {
         await browser.press("ArrowLeft");
         await settled(browser, ticks - back);
@@ -83,7 +83,7 @@ async function scrubsAndMatches(browser) {
     state = await settled(browser, 61);
     assert.equal(state.hash, hashAt(GOLDEN, 61), "hash at tick 61");
 
-    // The timeline bar is 12 pixels above the lower border of the canvas.
+    // The timeline bar is near the lower border of the canvas, 12 pixels from both sides.
     const [width, height] = await browser.evaluate(
         "[document.getElementById('glcanvas').clientWidth, document.getElementById('glcanvas').clientHeight]");
     const place = (part) => [12 + part * (width - 24), height - 18];
@@ -151,7 +151,7 @@ async function refuses(browser) {
     for (const [name, bytes] of Object.entries(cases)) {
         const file = write(name, bytes);
         const { verdict, why } = verdictOf(file);
-        // The message for an unknown file names all three kinds.
+        // For a file of an unknown kind, the message names all three kinds.
         const reasons = name === "garbage.replay" ? ["neither a report nor a replay nor a snapshot"]
             : [verdict, why ?? ""];
         await drop(browser, file);

@@ -1,4 +1,4 @@
-//! The worker of a game that ends the process on some inputs.
+//! The worker of a game that ends its process on some inputs.
 
 use std::process::ExitCode;
 

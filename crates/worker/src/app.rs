@@ -15,7 +15,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::{results, submit, work};
 
-/// Stack size of a thread in bytes: as usual for a main thread, which a game may rely on.
+/// Stack size of a thread in bytes. This is the usual size for a main thread, which a game may rely on.
 const STACK_BYTES: usize = 8 << 20;
 
 /// Exit code for an error.
@@ -56,7 +56,7 @@ impl<G: Game + 'static> Worker<G> {
         Worker { limits, ..self }
     }
 
-    /// Runs the command of this process's arguments. Exit code 0 is success, 2 wrong usage or an error.
+    /// Runs the command that the arguments of this process select. Exit code 0 is success, 2 wrong usage or an error.
     #[must_use]
     pub fn run(&self) -> ExitCode {
         match self.start() {
@@ -80,7 +80,7 @@ impl<G: Game + 'static> Worker<G> {
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
         let arguments =
             Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
-        // TLS provider, unless the program has installed one.
+        // Installs a TLS provider. This fails if the program has already installed one.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
@@ -95,7 +95,7 @@ impl<G: Game + 'static> Worker<G> {
                 Command::Results { connection, follow } => results::run(connection, rules, *follow).await,
             }
         });
-        // A hanging file system must not delay the end of the process.
+        // Does not wait for other threads, because a hanging file system must not delay the end of the process.
         runtime.shutdown_background();
         result
     }

@@ -14,7 +14,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::submit::Names;
 
-/// Time for which a failing request is repeated, about as long as for NATS.
+/// Time for which a failing request is repeated. For NATS, the time is about as long.
 const RETRY: Duration = Duration::from_secs(60);
 
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub(crate) struct Bucket {
 }
 
 impl Bucket {
-    /// Credentials, region and endpoint come from the environment variables `AWS_*`.
+    /// Opens a bucket. Credentials, region and endpoint come from the environment variables `AWS_*`.
     pub(crate) fn open(url: &Url) -> Result<Self, WorkerError> {
         let failed = WorkerError::bucket(url);
         let (_, folder) = ObjectStoreScheme::parse(url).map_err(|error| failed(error.into()))?;
@@ -33,7 +33,8 @@ impl Bucket {
         Ok(Bucket { url: url.clone(), store: PrefixStore::new(builder.build().map_err(&failed)?, folder) })
     }
 
-    /// The replays in the folder `name`, or else the object of that name. Without a name, all replays.
+    /// The replays in the folder `name`. If there are none, the object of this name. If `name` is empty, all replays of
+    /// the bucket.
     pub(crate) async fn replays(&self, name: &str) -> Result<Names<'_>, WorkerError> {
         let path = self.path(name)?;
         let failed = WorkerError::bucket(&self.url);
@@ -44,7 +45,7 @@ impl Bucket {
         if Pin::new(&mut found).peek().await.is_some() {
             return Ok(found.boxed());
         }
-        // The folder comes first, because some services fail when the name of a folder is looked up as an object.
+        // The folder was tried first, because some services fail when the name of a folder is looked up as an object.
         match self.store.head(&path).await {
             Ok(_) if !name.is_empty() => Ok(stream::iter([Ok(path.into())]).boxed()),
             Ok(_) | Err(object_store::Error::NotFound { .. }) => {
@@ -54,7 +55,7 @@ impl Bucket {
         }
     }
 
-    /// BLAKE3 of an object, in 64 hexadecimal digits.
+    /// BLAKE3 digest of an object, in 64 hexadecimal digits.
     pub(crate) async fn blake3(&self, name: &str) -> Result<String, WorkerError> {
         let failed = WorkerError::bucket(&self.url);
         let mut bytes = self.store.get(&self.path(name)?).await.map_err(&failed)?.into_stream();

@@ -13,7 +13,7 @@ pub(crate) enum WorkerError {
     Nats { what: &'static str, why: String },
     Bucket { url: Box<str>, error: Box<object_store::Error> },
     Read { path: PathBuf, error: io::Error },
-    /// The path is not relative, leads out of the folder, or is not UTF-8.
+    /// The path is not relative, leads out of its folder, or is not UTF-8.
     Path { path: PathBuf },
     NothingToSubmit { path: PathBuf },
     Output(io::Error),

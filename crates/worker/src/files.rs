@@ -13,7 +13,7 @@ use crate::job::Job;
 pub(crate) fn read_path(folder: &Path, file: &str, bytes_max: u64) -> io::Result<Vec<u8>> {
     let path = inside(Path::new(file)).ok_or(io::Error::other("the path leads out of the folder"))?;
     let path = folder.join(path);
-    // Opening a pipe would block.
+    // Only regular files are opened: opening a pipe would block.
     if !path.metadata()?.is_file() {
         return Err(io::Error::other("not a regular file"));
     }
@@ -30,7 +30,8 @@ pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64)
     Ok(bytes)
 }
 
-/// Compares the digest with the job. Only the beginning of a file that is too large was read, so it is not compared.
+/// Compares the digest of the bytes with that of the job. If a file is too large, only its beginning was read, so its
+/// digest is not compared.
 pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec<u8>> {
     let is_whole = u64::try_from(bytes.len()).is_ok_and(|length| length <= bytes_max);
     if is_whole && blake3::hash(&bytes).to_hex().as_str() != job.blake3 {
@@ -39,7 +40,7 @@ pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec
     Ok(bytes)
 }
 
-/// The path, if it is relative and stays in its folder.
+/// The path, if it is relative and does not lead out of its folder.
 pub(crate) fn inside(path: &Path) -> Option<PathBuf> {
     let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
     (path.components().all(is_inside) && path.file_name().is_some()).then(|| path.to_path_buf())

@@ -5,21 +5,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Job {
-    /// Name in the result, and path in a folder or bucket.
+    /// Name of the file in the result, and its path in a folder or bucket.
     pub(crate) file: String,
     pub(crate) source: Source,
-    /// BLAKE3 of the file, in 64 hexadecimal digits.
+    /// BLAKE3 digest of the file, in 64 hexadecimal digits.
     pub(crate) blake3: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Source {
-    /// The folder of the worker.
+    /// The file is in the folder of the worker.
     Folder,
-    /// The object store of the queue, under the BLAKE3 of the file.
+    /// The file is in the object store of the queue. Its BLAKE3 digest is the name of the object.
     Object,
-    /// The bucket of the worker.
+    /// The file is in the bucket of the worker.
     Bucket,
 }
 

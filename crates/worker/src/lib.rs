@@ -1,5 +1,5 @@
-//! Verifies replays on many machines: `submit` puts jobs into a queue in NATS JetStream, workers take them, and results
-//! are the lines of `verify --json` in a stream.
+//! Verifies replays on many machines. `submit` puts jobs into a queue in NATS JetStream, and workers take them. The
+//! results are in another stream: each is a line of `verify --json`.
 //!
 //! A game gets the program with one line in `main`:
 //!
@@ -14,7 +14,7 @@
 //!
 //! Invariants:
 //! - A job stays in the queue until its result is in the stream of results.
-//! - A file has at most one result under the same rules and limits: the server refuses a second one.
+//! - A file has at most one result under the same rules and limits, because the server refuses a second one.
 //! - A process has at most one file at work, so that a file that kills the process takes no other with it.
 
 mod app;

@@ -14,11 +14,11 @@ const REQUEST_MAX: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Default)]
 pub(crate) struct Metrics {
-    /// Added results, by verdict.
+    /// Number of added results, by verdict.
     results: Mutex<BTreeMap<String, u64>>,
-    /// Jobs that already had a result.
+    /// Number of jobs that already had a result.
     pub(crate) known: AtomicU64,
-    /// Jobs that had been delivered before.
+    /// Number of jobs that had been delivered before.
     pub(crate) redelivered: AtomicU64,
     /// Whether a file is being verified.
     pub(crate) is_busy: AtomicBool,
@@ -30,7 +30,7 @@ impl Metrics {
         *results.entry(verdict.into()).or_default() += 1;
     }
 
-    /// `ticks` is the number of simulated ticks.
+    /// The text of all metrics. `ticks` is the number of simulated ticks.
     fn text(&self, ticks: u64) -> String {
         let mut text = String::from("# TYPE lockstep2d_worker_results_total counter\n");
         for (verdict, count) in self.results.lock().unwrap_or_else(PoisonError::into_inner).iter() {

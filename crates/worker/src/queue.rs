@@ -17,13 +17,13 @@ use crate::app::Connection;
 use crate::error::WorkerError;
 use crate::job::Job;
 
-/// Time for which a job is recognised when submitted again.
+/// Time for which a job is recognised when it is submitted again.
 const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 
-/// Consumer that all workers share.
+/// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Pauses between attempts, together about a minute, in which a server can restart.
+/// Pauses between attempts. Together they last about a minute, in which a server can restart.
 const PAUSES: [Duration; 8] = [
     Duration::from_millis(100),
     Duration::from_millis(400),
@@ -49,7 +49,8 @@ pub(crate) enum Added {
     Known,
 }
 
-/// Rules, semantics id and version of the rules: programs of different versions do not share jobs.
+/// Name made of the rules, the semantics id and the version of the rules, so that programs of different versions do not
+/// share jobs.
 pub(crate) fn default_name(rules: RulesId) -> String {
     let name: String =
         rules.name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
@@ -91,7 +92,7 @@ impl Queue {
         Ok(Queue { context, name, results, replicas })
     }
 
-    /// Adds a job, unless one for the same bytes was added within the last hour.
+    /// Adds a job, unless a job for the same bytes was added within the last hour.
     pub(crate) async fn submit(&self, job: &Job) -> Result<Added, WorkerError> {
         let payload = json(job);
         let publish = || async {
@@ -109,9 +110,10 @@ impl Queue {
             durable_name: Some(CONSUMER.into()),
             ack_policy: AckPolicy::Explicit,
             ack_wait,
-            // Workers check the number of deliveries: a file that kills workers gets a result.
+            // The server delivers a job any number of times. Workers check the number of deliveries, so that a file
+            // that kills workers gets a result.
             max_deliver: -1,
-            // Each worker has at most one unacknowledged job.
+            // There is no limit here, because each worker has at most one unacknowledged job.
             max_ack_pending: -1,
             ..Default::default()
         };
@@ -132,7 +134,7 @@ impl Queue {
         retry("look up a result", look).await
     }
 
-    /// Adds a result, unless its key has one.
+    /// Adds a result, unless there is one with the same key.
     pub(crate) async fn add_result(&self, key: &str, line: &str) -> Result<Added, WorkerError> {
         let publish = || async {
             let message = PublishMessage::build()
@@ -141,7 +143,7 @@ impl Queue {
             let sent = self.context.send_publish(results_subject(&self.name, key), message).await?;
             match sent.await {
                 Ok(_) => Ok(Added::New),
-                // Another worker was faster, or the answer to an earlier attempt was lost.
+                // Another worker was faster. Or an earlier attempt succeeded, but its answer was lost.
                 Err(error) if error.kind() == PublishErrorKind::WrongLastSequence => Ok(Added::Known),
                 Err(error) => Err(error),
             }
@@ -184,7 +186,7 @@ pub(crate) fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).expect("strings and numbers have a JSON form")
 }
 
-/// Repeats a failing operation for about a minute, and returns the last error.
+/// Repeats a failing operation for about a minute. Then returns the last error.
 pub(crate) async fn retry<T, E, F>(
     what: &'static str,
     mut attempt: impl FnMut() -> F,

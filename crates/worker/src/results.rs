@@ -11,13 +11,13 @@ use crate::error::WorkerError;
 use crate::queue::Queue;
 use crate::shutdown::Shutdown;
 
-/// Longest time for which the server holds a request.
+/// Longest time for which the server holds a request for results.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Results per request.
+/// Maximum number of results per request.
 const BATCH: usize = 500;
 
-/// Prints the results. With `follow`, also prints later ones, until a signal.
+/// Prints the results. With `follow`, also prints later results, until a signal.
 pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
     let shutdown = Shutdown::listen(Duration::ZERO)?;
     let queue = Queue::open(connection, rules).await?;

@@ -40,7 +40,7 @@ impl Shutdown {
 
     pub(crate) async fn reached(&mut self, phase: Phase) {
         if self.0.wait_for(|now| *now >= phase).await.is_err() {
-            // The listener ends with the process.
+            // The listener is gone only when the process ends.
             std::future::pending::<()>().await;
         }
     }

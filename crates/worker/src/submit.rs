@@ -17,7 +17,7 @@ use crate::files::inside;
 use crate::job::{Job, Source};
 use crate::queue::{Added, Queue, json, retry};
 
-/// Files that are submitted at the same time: acknowledgements limit the rate.
+/// Number of files that are submitted at the same time. With one at a time, acknowledgements would limit the rate.
 const AT_ONCE: usize = 16;
 
 /// Names of files, as in jobs and results.
@@ -27,19 +27,19 @@ pub(crate) type Names<'a> = BoxStream<'a, Result<String, WorkerError>>;
 struct Line<'a> {
     file: &'a str,
     blake3: &'a str,
-    /// Whether the job is new: files with the same bytes are one job.
+    /// Whether the job is new. Files with the same bytes are one job.
     queued: bool,
 }
 
 enum Files {
-    /// The folders of the workers, which have the files at the same paths.
+    /// The files are in the folders of the workers, at the same paths as here.
     Folder,
-    /// The file system of this command. Workers use the object store of the queue.
+    /// The files are in the file system of this command. Workers read them from the object store of the queue.
     Objects(Box<ObjectStore>),
     Bucket(Bucket),
 }
 
-/// Prints a line for each file.
+/// Adds the files, and prints a line for each.
 pub(crate) async fn run(arguments: &SubmitArguments, rules: RulesId) -> Result<(), WorkerError> {
     let queue = Queue::open(&arguments.connection, rules).await?;
     let files = match &arguments.bucket {
@@ -58,7 +58,7 @@ fn print(line: &str) -> Result<(), WorkerError> {
     std::io::stdout().write_all(format!("{line}\n").as_bytes()).map_err(WorkerError::Output)
 }
 
-/// The file at `path`, or the replays in that folder.
+/// The file at `path`. If `path` is a folder, the replays in it.
 async fn replays<'a>(files: &'a Files, path: &'a Path) -> Result<Names<'a>, WorkerError> {
     if let Files::Bucket(bucket) = files {
         return bucket.replays(path.to_str().ok_or_else(|| no_name(path))?).await;
@@ -107,7 +107,7 @@ async fn submit(
     Ok(json(&Line { file: &job.file, blake3: &job.blake3, queued }))
 }
 
-/// BLAKE3 of a file, in 64 hexadecimal digits.
+/// BLAKE3 digest of a file, in 64 hexadecimal digits.
 fn blake3_of(path: &Path) -> Result<String, WorkerError> {
     let failed = WorkerError::read(path);
     let mut hasher = blake3::Hasher::new();
@@ -115,7 +115,7 @@ fn blake3_of(path: &Path) -> Result<String, WorkerError> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
-/// Adds a file that the object store does not have.
+/// Adds a file to the object store, unless the store already has it.
 async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), WorkerError> {
     if store.info(blake3).await.is_ok() {
         return Ok(());

@@ -25,18 +25,18 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job, and which an idle worker takes to end.
+/// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which a request counts as lost.
+/// Time after [`EXPIRES`] at which an unanswered request counts as lost.
 const LOST: Duration = Duration::from_secs(5);
 
-/// Pause before another attempt to read a file, multiplied by the deliveries so far.
+/// Pause before another attempt to read a file. It is multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// Verdict on a file whose deliveries all ended without a result.
+/// Verdict on a file whose allowed deliveries all ended without a result.
 const CRASHED: &str = "crashed";
-/// Name, in the metrics, of a file that cannot be read.
+/// Name, in the metrics, of the result for a file that cannot be read.
 const UNREAD: &str = "unread";
 
 struct Work<G: Game + 'static> {
@@ -46,7 +46,7 @@ struct Work<G: Game + 'static> {
     store: ObjectStore,
     bucket: Option<Bucket>,
     max_deliver: u64,
-    /// Interval of progress messages to the server.
+    /// Interval between progress messages to the server.
     progress: Duration,
     metrics: Arc<Metrics>,
 }
@@ -106,14 +106,14 @@ pub(crate) async fn run<G: Game + 'static>(
     Ok(())
 }
 
-/// The next job; `None` if none arrives in time.
+/// The next job. `None` if none arrives in time.
 async fn next(jobs: &PullConsumer) -> Option<Message> {
     let request = async {
         let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await.ok()?;
         match batch.next().await? {
             Ok(message) => Some(message),
             Err(_) => {
-                // Some errors return at once.
+                // Some errors return at once, so a pause limits the rate of requests.
                 tokio::time::sleep(Duration::from_millis(100)).await;
                 None
             }
@@ -143,7 +143,7 @@ impl<G: Game + 'static> Work<G> {
         match self.done(message, &job, delivered).await {
             Done::Again(pause) => acknowledge(message, AckKind::Nak(Some(pause))).await,
             Done::Result(Judged { verdict, line }) => {
-                // The job leaves the queue after its result has arrived.
+                // The job leaves the queue only after its result has been stored.
                 match self.queue.add_result(&key, &line).await? {
                     Added::New => self.metrics.add_result(&verdict),
                     Added::Known => drop(self.metrics.known.fetch_add(1, Ordering::Relaxed)),
@@ -154,7 +154,7 @@ impl<G: Game + 'static> Work<G> {
         Ok(())
     }
 
-    /// Verifies the file of a job, and tells the server meanwhile that work continues.
+    /// Verifies the file of a job. In the meantime, tells the server that work continues.
     async fn done(&self, message: &Message, job: &Job, delivered: u64) -> Done {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
@@ -165,7 +165,8 @@ impl<G: Game + 'static> Work<G> {
             tokio::select! {
                 done = &mut verify => return done,
                 () = tokio::time::sleep(self.progress) => {
-                    // If the message is lost, another worker may verify the file, too. The later result is refused.
+                    // If this message is lost, another worker may verify the file, too. The server refuses the later
+                    // result.
                     let _ = message.ack_with(AckKind::Progress).await;
                 }
             }
@@ -180,7 +181,7 @@ impl<G: Game + 'static> Work<G> {
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
         let judged = tokio::task::spawn_blocking(move || judge.judge(&file, &bytes)).await;
-        // After a signal, the file goes to another worker at once.
+        // If a signal has stopped the verification, the job goes back to the queue without a pause.
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
 
@@ -202,13 +203,13 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Waits until the server has confirmed the acknowledgement. If it is lost, the job is delivered again, and dropped
-/// because it has a result.
+/// Acknowledges a message, and waits for the server's confirmation. If the acknowledgement is lost, the job is
+/// delivered again. The worker that gets it finds the result and drops the job.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// Result for a file that is not read again.
+/// Result for a file that has been delivered too often. It is not read again.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

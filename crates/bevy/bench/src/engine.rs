@@ -8,10 +8,10 @@ pub trait Engine {
     /// Plays a tick.
     fn step(&mut self);
 
-    /// Saves the state after the tick, and drops the oldest of more than [`DEPTH`] saves.
+    /// Saves the state after the tick. If there are then more than [`DEPTH`] saves, drops the oldest one.
     fn save(&mut self);
 
-    /// Returns to the oldest save, and drops the later ones.
+    /// Returns to the oldest save, and drops the later saves.
     fn load(&mut self);
 
     /// State to compare after a rollback: bits of positions, rotations and velocities, or a hash.

@@ -1,4 +1,5 @@
-//! An app whose physics is saved by the schedules of bevy_ggrs, without a session, to time each save and load.
+//! An app whose physics is saved by the schedules of bevy_ggrs. There is no session, so that each save and load is
+//! timed.
 
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ use crate::engine::{DEPTH, Engine};
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Tick;
 
-/// An app, and its compared state.
+/// An app, and a function that reads the state to compare.
 pub struct GgrsApp {
     app: App,
     state: fn(&mut World) -> Vec<u64>,

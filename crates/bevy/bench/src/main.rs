@@ -1,5 +1,5 @@
-//! Measures saves and rollbacks of piles of boxes: this plugin, and bevy_rapier2d and Avian with the snapshots of
-//! bevy_ggrs. Prints a table.
+//! Measures saves and rollbacks of piles of boxes, and prints a table. Compares this plugin with bevy_rapier2d and
+//! Avian, which use the snapshots of bevy_ggrs.
 
 mod avian;
 mod engine;
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for engine in &mut engines {
             engine.settle();
         }
-        // Interleaved: other load on the machine affects all engines alike.
+        // The engines take turns, so that other load on the machine affects all of them alike.
         for _ in 0..ROLLBACKS {
             engines.iter_mut().for_each(Measured::roll_back);
         }
@@ -52,7 +52,7 @@ struct Measured {
     saves: Vec<Duration>,
     loads: Vec<Duration>,
     rollbacks: Vec<Duration>,
-    /// Rollbacks that reproduced the state before them.
+    /// Number of rollbacks after which the state was the same as before.
     equal: usize,
 }
 
@@ -62,7 +62,7 @@ impl Measured {
         Measured { name, engine, bytes: 0, saves, loads, rollbacks, equal: 0 }
     }
 
-    /// Plays until the pile rests, then counts the memory of the saves, including data that a tick copies because a
+    /// Plays until the pile rests, then counts the bytes of a save. They include data that a tick has to copy because a
     /// save shares it.
     fn settle(&mut self) {
         (0..SETTLING).for_each(|_| self.engine.step());
@@ -75,7 +75,7 @@ impl Measured {
         self.bytes = change.bytes_allocated.saturating_sub(change.bytes_deallocated) / DEPTH;
     }
 
-    /// Plays a tick, and the last `DEPTH - 1` ticks again from the oldest save.
+    /// Plays a tick, loads the oldest save, and plays the last `DEPTH - 1` ticks again.
     fn roll_back(&mut self) {
         self.tick();
         let before = self.engine.state();
@@ -104,7 +104,7 @@ impl Measured {
     }
 }
 
-/// The 10th percentile in microseconds: other programs lengthen some calls.
+/// The 10th percentile in microseconds. A mean would depend on other programs, which lengthen some calls.
 fn lowest_tenth(times: &[Duration]) -> f64 {
     let mut times = times.to_vec();
     times.sort();

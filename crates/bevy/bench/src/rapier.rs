@@ -1,4 +1,4 @@
-//! bevy_rapier2d: saves the components of its context entity, and the transforms, which it reads.
+//! bevy_rapier2d. The snapshots save the components of its context entity, and the transforms, which Rapier reads.
 
 use bevy::prelude::*;
 use bevy_ggrs::{ComponentSnapshotPlugin, RollbackApp, Strategy};
@@ -11,8 +11,8 @@ use bevy_rapier2d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use crate::ggrs::{self, GgrsApp, Tick};
 use crate::scene;
 
-/// `RapierContextSimulation` cannot be cloned: its fields are copied, except the pipeline, which holds only working
-/// memory.
+/// Saves and loads `RapierContextSimulation`. The type cannot be cloned, so its fields are copied, except the pipeline,
+/// which holds only working memory.
 struct Simulation;
 
 struct SimulationState {

@@ -48,7 +48,7 @@ impl<G: LockstepGame> Driver<G> {
             Driver::SyncTest(test) if !is_paused => test.run(time.delta, inputs),
             Driver::Replay(replay) if !is_paused => replay.run(time.delta),
             Driver::Local(_) | Driver::SyncTest(_) | Driver::Replay(_) => Ok(()),
-            // Packets arrive during a pause, too.
+            // During a pause, packets still arrive.
             Driver::Match(network) => network.run(time, is_paused, inputs),
         }
     }

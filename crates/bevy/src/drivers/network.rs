@@ -43,7 +43,7 @@ const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {
     peer: Peer<Observed<G>, AnyTransport>,
-    /// Estimated time since the last tick, in ticks: the session stretches its ticks.
+    /// Estimated time since the last tick, in ticks. An estimate, because the session lengthens and shortens its ticks.
     phase: f32,
 }
 
@@ -66,7 +66,7 @@ impl<G: LockstepGame> MatchDriver<G> {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // Inputs that were not issued are kept.
+            // If the peer does not issue the inputs, they are kept for the next tick.
             if !self.peer.advance(&inputs.next(own as usize))? {
                 break;
             }
@@ -80,7 +80,7 @@ impl<G: LockstepGame> MatchDriver<G> {
         Ok(())
     }
 
-    /// Sets the tick of the log: a received state does not contain it.
+    /// Sets the tick of the log, because a received state does not contain its tick.
     fn synchronise(&self) {
         self.peer.game().log().set_tick(self.peer.tick());
     }

@@ -53,7 +53,7 @@ impl<G: LockstepGame> ReplayDriver<G> {
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
         self.film.with_timeline_mut(|timeline| {
             timeline.game().log().suspend();
-            // An error may leave the game at another tick.
+            // An error may leave the game at another tick than the requested one.
             let sought = timeline.seek(tick);
             let game = timeline.game();
             game.log().relocate(timeline.tick(), game.world());
@@ -74,7 +74,7 @@ impl<G: LockstepGame> ReplayDriver<G> {
     }
 
     pub(crate) fn fraction(&self) -> f32 {
-        // There is no next tick to interpolate to.
+        // At the end of the replay, there is no next tick to interpolate to.
         if self.tick() == self.ticks { 1.0 } else { fraction_of(&self.timestep) }
     }
 }

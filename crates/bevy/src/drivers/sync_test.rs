@@ -1,4 +1,4 @@
-//! [`SyncTestDriver`]: a local game with a rollback after each tick from tick `depth` on.
+//! [`SyncTestDriver`]: a local game that rolls back after each tick from tick `depth` on.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -12,8 +12,8 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// After each tick from `depth` on, loads the state of `depth` ticks ago, plays the ticks again, and compares the
-/// states.
+/// From tick `depth` on, each tick is followed by a rollback: the driver loads the state of `depth` ticks ago, plays
+/// these ticks again, and compares the states.
 pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
@@ -51,7 +51,7 @@ impl<G: LockstepGame> SyncTestDriver<G> {
         self.replay()
     }
 
-    /// Loads the oldest state and plays to the newest.
+    /// Loads the state of `depth` ticks ago, and plays to the newest tick again.
     fn replay(&mut self) -> Result<(), LockstepError> {
         let count = self.inputs.len();
         if count < self.depth as usize {

@@ -30,7 +30,7 @@ pub struct Heard {
 #[derive(Resource)]
 pub struct Seed(pub u64);
 
-/// An app whose inputs follow from the tick and a seed.
+/// An app whose inputs depend only on the tick and a seed.
 pub fn app(game: Lockstep<Arena>, seed: u64, frame: Duration) -> App {
     let mut app = App::new();
     app.add_plugins((
@@ -69,7 +69,7 @@ fn listen(
     assert_eq!(failure, None, "the driver has stopped");
 }
 
-/// There is one view for every body, at its pose.
+/// Checks that there is one view for every body, at its pose.
 pub fn check_views(app: &mut App) {
     let mut query = app.world_mut().query::<(Entity, &BodyView, &Transform)>();
     let scale = app.world().resource::<LockstepSettings>().pixels_per_metre;

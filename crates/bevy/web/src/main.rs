@@ -1,8 +1,8 @@
 //! `versus` over WebRTC, for web pages and native programs. Arrow keys.
 //!
 //! A page without a room in its address opens a match in a new room. Pages with `#ROOM` join it. Natively:
-//! `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run --example bot` starts one,
-//! and an opponent.
+//! `bevy_lockstep2d_web [ROOM [SERVER]]`. All need a signalling server of matchbox. `cargo run --example bot` starts
+//! such a server and an opponent.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]
@@ -22,7 +22,7 @@ struct Arguments {
     server: String,
     /// The room of a match that another player has opened.
     room: Option<String>,
-    /// A known identity gets its seat back.
+    /// Identity of this player. A player that returns with the same identity gets its seat back.
     me: PeerIdentity,
     /// Room that is created if `room` is `None`.
     new_room: String,
@@ -31,7 +31,7 @@ struct Arguments {
 #[derive(Resource)]
 struct Room(String);
 
-/// A room without other members.
+/// A room that has no other members yet.
 #[derive(Resource)]
 struct Empty(Option<Matchbox>, PeerIdentity);
 
@@ -73,7 +73,7 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
     platform::show(&text, &mut windows);
 }
 
-/// Puts the room into the address of the page, so that a reloaded page returns. A desync is an error.
+/// Puts the room into the address of the page, so that a reloaded page returns to it. Fails on a desync.
 fn enter(mut events: MessageReader<MatchEvent>, room: Res<Room>) -> Result {
     for MatchEvent(event) in events.read() {
         if let PeerEvent::Desync(desync) = event {

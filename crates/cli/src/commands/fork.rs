@@ -61,7 +61,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         play_lines(&mut copy, path, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // One tick beyond the limit is enough to fail the verification.
+    // The number of idle ticks is limited. One tick beyond the limit is enough to fail the verification.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle)?;
@@ -101,7 +101,7 @@ fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Resu
     } else {
         Box::new(File::open(path).map_err(&read_error)?)
     };
-    // Inputs take more bytes in JSON than in a replay.
+    // The limit for lines is larger than that of a file, because inputs take more bytes in JSON than in a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(&read_error)?;

@@ -86,7 +86,7 @@ impl Arguments {
     }
 }
 
-/// The state after the requested tick, by default at the start.
+/// The state after the requested tick. Without a requested tick, the state at the start.
 fn state_of_replay<G: Game>(
     bytes: &[u8],
     arguments: &Arguments,
@@ -106,8 +106,8 @@ fn state_of_replay<G: Game>(
     Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })
 }
 
-/// The state of the report's writer, which may differ from that of the report's replay. Without a save of the tick, it
-/// is computed from the replay.
+/// The state of the report's writer, which may differ from that of the report's replay. If the report has no save of
+/// the tick, the state is computed from the replay.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,

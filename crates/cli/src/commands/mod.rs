@@ -1,4 +1,4 @@
-//! The commands of a tool without the viewer, one module each: `Arguments` declares the arguments, `run` executes the
+//! The commands of a tool, except `view`. Each is a module: `Arguments` declares the arguments, and `run` executes the
 //! command. [`table`] lists them.
 
 mod bisect;
@@ -29,7 +29,8 @@ pub(crate) struct Row<G: Game> {
     pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,
 }
 
-/// The rows of commands, each given as its name, its module, and the argument with the replay whose game may panic.
+/// Creates a [`Row`] for each `"name" => module`. If `(argument)` follows, the game may panic while it plays the file
+/// of this argument, and the panic becomes an error that names the file.
 macro_rules! rows {
     ($($name:literal => $module:ident $(($file:ident))?),+ $(,)?) => {
         vec![$(Row {

@@ -51,7 +51,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Appends while the game runs: a killed process leaves a valid incomplete replay in the temporary file.
+/// Appends to the file while the game runs. If the process is killed, the temporary file is a valid incomplete replay.
 fn write<G: Game>(
     mut recording: Recording<G>,
     mut scene: Scene<G>,

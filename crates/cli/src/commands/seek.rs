@@ -94,7 +94,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Seeks, then steps back. Returns the numbers of ticks simulated by both.
+/// Seeks, then steps back. Returns the numbers of ticks simulated by the seek and by the steps back.
 fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
     let path = || arguments.file.clone();
     let explain = |error| match error {
@@ -115,7 +115,7 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
 
 /// Loads the keyframes of a file, if it exists.
 fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result<(), CommandError> {
-    // 1 MiB is enough for the headers of the file and of each keyframe.
+    // Besides the keyframes, 1 MiB is enough for the headers of the file and of each keyframe.
     let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),

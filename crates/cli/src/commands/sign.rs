@@ -46,7 +46,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         .map_err(CommandError::replay(&arguments.file))?;
 
     let beside = path_beside(&arguments.file);
-    // The file is locked before the signatures are read: simultaneous processes lose no signature.
+    // The file is locked before the signatures are read, so that simultaneous processes lose no signature.
     let mut output = OutputFile::create(&beside, Overwrite::ALWAYS)?;
     let mut signatures = match read_signatures(&beside) {
         Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
@@ -79,7 +79,7 @@ struct Line {
 }
 
 pub(crate) fn read_signatures(path: &Path) -> Result<Signatures, CommandError> {
-    // Reading a pipe would block.
+    // Only regular files are read: reading a pipe would block.
     if !fs::metadata(path).map_err(CommandError::read(path))?.is_file() {
         return Err(CommandError::NoText { path: path.to_path_buf() });
     }

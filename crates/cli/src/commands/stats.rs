@@ -59,7 +59,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }
 
-/// The names need no escapes.
+/// A line of JSON. The names of the figures need no escapes.
 fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
     line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));

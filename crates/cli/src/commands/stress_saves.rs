@@ -87,7 +87,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     let mut options = CheckOptions::default();
     if !arguments.all {
-        // `Variant::Again` tells a nondeterministic game from a save that loses state.
+        // With `Variant::Again`, a game that is not deterministic can be told from a save that loses state.
         options.variants = vec![Variant::Again, Variant::Reloaded];
         options.variants.extend(arguments.rollback.then_some(Variant::RolledBack));
     }
@@ -101,7 +101,7 @@ fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     }
 }
 
-/// Number of ticks of a replay, as far as its inputs can be read.
+/// Number of ticks of a replay, up to the first whose inputs cannot be read.
 fn ticks(file: &[u8], limits: &Limits) -> u64 {
     let Ok(mut inputs) = TickInputs::open(file, limits) else {
         return 0;
@@ -141,7 +141,7 @@ impl fmt::Display for Outcome<'_> {
     }
 }
 
-/// A finding, with each line escaped: its texts may come from an untrusted file.
+/// A finding. Each line is escaped, because its texts may come from an untrusted file.
 struct Lines<'a>(&'a Finding);
 
 impl fmt::Display for Lines<'_> {

@@ -56,7 +56,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     output.append(&replay)?;
     output.publish()?;
 
-    // Damage after the last requested tick does not matter.
+    // Damage after the last requested tick is not reported.
     let damage = damage.filter(|_| ticks < most);
     if arguments.json {
         let file = arguments.output.display().to_string();
@@ -81,7 +81,7 @@ struct Line {
     left_out: Option<String>,
 }
 
-/// The header and the intact blocks, and the error of the part after them if it is damaged.
+/// Returns the header and the intact blocks, and the error of the part after them if that part is damaged.
 fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
     let mut reader = Reader::open(bytes, limits)?;
     let mut end = reader.offset();

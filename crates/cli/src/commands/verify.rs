@@ -133,7 +133,7 @@ impl LimitArguments {
     }
 }
 
-/// Adds the limits of the tool to the help of the arguments of [`LimitArguments`], which `command` must have.
+/// Adds the limits of the tool to the help of `command`, which must have the arguments of [`LimitArguments`].
 pub fn with_defaults(command: Command, limits: &Limits) -> Command {
     let defaults = [
         ("max_bytes", limits.file_bytes),

@@ -62,7 +62,7 @@ impl AllowedKeys {
         for signature in signatures.all() {
             let Some(Owner { key, name }) = self.0.get(&signature.key) else { continue };
             let bytes = ed25519_dalek::Signature::from_bytes(&signature.bytes);
-            // Strict: nobody can derive a second valid signature from a valid one.
+            // With strict verification, nobody can derive a second valid signature from a valid one.
             let is_valid = key.verify_strict(&message, &bytes).is_ok();
             if is_valid { &mut valid } else { &mut forged }.insert(name.clone());
         }

@@ -18,7 +18,7 @@ const PREFIX: &str = "lockstep2d secret key 1 ";
 /// The module [`signature`](crate::signature) has an example.
 pub struct SecretKey(SigningKey);
 
-/// The system provides no random numbers.
+/// Error: the system provides no random numbers.
 #[derive(Debug)]
 pub struct RandomError(getrandom::Error);
 
@@ -52,7 +52,7 @@ impl SecretKey {
     }
 }
 
-/// Omits the secret.
+/// The output omits the secret.
 impl fmt::Debug for SecretKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "SecretKey of {}", self.public_key())
@@ -75,7 +75,7 @@ impl FromStr for SecretKey {
 pub struct PublicKey(pub [u8; 32]);
 
 impl PublicKey {
-    /// `None` for an invalid key, or for a weak one, for which anyone can forge signatures.
+    /// Decodes the key. Returns `None` if it is invalid, or if it is a weak key, for which anyone can forge signatures.
     pub(super) fn decode(self) -> Option<VerifyingKey> {
         VerifyingKey::from_bytes(&self.0).ok().filter(|key| !key.is_weak())
     }

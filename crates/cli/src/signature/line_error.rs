@@ -29,7 +29,7 @@ pub enum Flaw {
     NoSecretKey,
     /// The line is not an allowed key: `KEY NAME`.
     NoAllowedKey,
-    /// The digits are not a public key of Ed25519, or are a weak one.
+    /// The digits are not a public key of Ed25519, or are a weak public key.
     InvalidKey,
     /// An earlier line has the same key.
     KeyTwice,

@@ -1,7 +1,7 @@
 //! Ed25519 signatures of games, with which key owners vouch for a replay.
 //!
 //! A signature covers the [`GameDigest`]: one combination of engine semantics, rules, setup and inputs. FORMAT.md gives
-//! the layout of the files, and VERIFYING.md what a signature does not prove.
+//! the layout of the files. VERIFYING.md lists what a signature does not prove.
 //!
 //! A server checks the signatures of an upload:
 //!

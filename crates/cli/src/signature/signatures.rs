@@ -21,7 +21,7 @@ const SUFFIX: &str = ".sig";
 /// Beginning of every line of a signature file.
 const PREFIX: &str = "lockstep2d signature 1 ";
 
-/// Separates the signed message from other uses of a key.
+/// Prefix of the signed message, which separates it from other messages signed with the same key.
 const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
 
 /// The signature of one key.
@@ -33,7 +33,7 @@ pub struct Signature {
     pub bytes: [u8; 64],
 }
 
-/// The signatures of a replay: at most one by each key, in the order of the file. Their text is canonical.
+/// The signatures of a replay: at most one by each key, in the order of the file. Equal values have exactly one text.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};

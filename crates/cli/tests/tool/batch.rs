@@ -23,7 +23,7 @@ fn explode(now: bool) {
     assert!(!now, "in a setup");
 }
 
-/// A counter that panics at [`FUSE`], as an input or as the start of a setup. It is not `Send`.
+/// A counter that panics when an input or the start in the setup is [`FUSE`]. It is not `Send`.
 pub(crate) struct Bomb(Rc<Cell<Counter>>);
 
 impl Bomb {
@@ -233,7 +233,7 @@ fn a_part_does_not_depend_on_where_the_folder_is_or_what_else_is_there() {
     assert!(taken(&folder, "").is_superset(&before));
 }
 
-/// Runs the sandbox's command with this standard input.
+/// Runs the `lockstep2d` command with `input` as the standard input.
 fn with_input(arguments: &[&str], input: &[u8]) -> (String, Option<i32>) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d"));
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());

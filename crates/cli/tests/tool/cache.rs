@@ -12,7 +12,7 @@ use crate::batch::{fuse, run_bomb};
 use crate::counter::Counter;
 use crate::{Folder, Outcome, replay, run, run_tool};
 
-/// The lines without their field `cached`, and the number of lines in which it was true.
+/// The lines without their field `cached`, and the number of lines in which this field was true.
 fn uncached(outcome: &Outcome) -> (Vec<Value>, usize) {
     let mut lines: Vec<Value> = outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let taken = lines.iter_mut().map(|line| line.as_object_mut().unwrap().remove("cached").unwrap());
@@ -74,7 +74,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         entries(&folder).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
     let restored = || whole.iter().all(|(path, bytes)| fs::read(path).unwrap() == *bytes);
 
-    // Every fifth bit of one entry is flipped, then the entry is cut or replaced.
+    // Flips every fifth bit of one entry, one at a time. Then cuts or replaces the entry.
     let (victim, bytes) = &whole[0];
     for bit in (0..bytes.len() * 8).step_by(5) {
         let mut damaged = bytes.clone();
@@ -88,7 +88,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         assert_eq!(uncached(&run(&arguments)).0, plain);
         assert!(restored());
     }
-    // An entry under the name of another entry, and a folder in the place of an entry.
+    // Copies another entry over this one, then puts a folder in its place.
     fs::copy(&whole[1].0, victim).unwrap();
     assert_eq!(uncached(&run(&arguments)).0, plain);
     assert!(restored());
@@ -120,7 +120,7 @@ fn other_limits_are_other_questions() {
         assert_eq!(with(&[&flag, number]), (limited, 5), "{flag}");
     }
     assert!(entries(&folder).len() > 5 * same - 5);
-    // A flag that repeats the default has the same key. The key contains the limits of the tool.
+    // A flag that repeats the default gives the same key. Other limits of the tool give another key.
     let default = Limits::default().ticks.to_string();
     assert_eq!(with(&["--max-ticks", &default]).1, 5);
     let tool = Tool::<Counter>::new().with_limits(Limits { players: 3, ..Limits::default() });

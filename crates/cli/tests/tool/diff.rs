@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
-/// Report of the peer on `seat`. The sum of the peer is off by one from tick `wrong` on.
+/// Report of the peer on `seat`. From tick `wrong` on, the peer's sum is off by one.
 fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
     let mut history = History::new(&game);
@@ -124,7 +124,7 @@ fn snapshots_are_compared_whatever_the_game() {
     assert_eq!(run(&["diff", &a, &a]).exit, Exit::Success);
 }
 
-/// The bytes of another game's setup could decode to a meaningless setup of this game.
+/// If the setup of another game were decoded, its bytes could give a meaningless setup of this game.
 #[test]
 fn replays_of_another_game_are_named_and_not_compared() {
     let folder = Folder::new("diff-games");

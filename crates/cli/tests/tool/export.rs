@@ -109,7 +109,7 @@ fn other_files_are_called_what_they_are() {
     let trace = folder.path("a.trace");
     run_sandbox(&["trace", &golden("ragdoll"), "--to", "9", "-o", &trace]);
     let mut older = lockstep2d::world::World::default().to_bytes();
-    // The semantics id follows eight bytes of magic number and the format version.
+    // The semantics id follows the magic number and the format version, which are 12 bytes together.
     older[12] = 2;
     let older = folder.write("older", &older);
     for (file, why) in [
@@ -228,7 +228,7 @@ fn states_are_lines_of_json() {
     assert_eq!(fs::read_to_string(&to).unwrap(), outcome.out);
 }
 
-/// Includes numbers inside enum variants.
+/// Also checks numbers inside enum variants.
 #[test]
 fn numbers_of_a_world_have_bits_and_a_decimal() {
     let outcome = run_sandbox(&["export", &golden("ragdoll"), "--json", "--tick", "60"]);

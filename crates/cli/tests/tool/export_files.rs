@@ -29,7 +29,7 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window that fits the world at up to 101 ticks of a range and its last tick.
+/// The window that fits the world at up to 101 ticks of a range, and at its last tick.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
@@ -159,7 +159,7 @@ fn wrong() -> Vec<u8> {
     }
     let mut bytes = recording.finish().unwrap();
     let middle = bytes.len() / 2;
-    // A checksum or a checkpoint detects the damage.
+    // The damage is found by a checksum or by a checkpoint.
     (middle..middle + 40).for_each(|at| bytes[at] ^= 0x55);
     bytes
 }
@@ -182,7 +182,7 @@ fn a_damaged_replay_leaves_no_file() {
     assert_eq!(fs::read_dir(folder.path("")).unwrap().count(), 1, "no unfinished file is left");
 }
 
-/// A process of its own: memory of other tests does not count.
+/// Each measurement is a process of its own, so that memory of other tests does not count.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_frames() {
@@ -197,7 +197,7 @@ fn memory_does_not_grow_with_the_frames() {
     };
     let frames = crate::sweep::size(500, 150);
     let (few, many) = (peak_of(50), peak_of(frames));
-    // The pixels of the additional frames are 120 MB for 100 frames.
+    // The pixels of 100 frames take 120 MB.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for {frames}");
 }
 

@@ -116,7 +116,7 @@ fn curves_have_the_extremes_of_what_they_show() {
     }
 }
 
-/// The error of the integrator is `m g² t h / 2` over a time t with time step h.
+/// The error of the integrator after a time t is `m g² t h / 2`, with the time step h.
 #[test]
 fn energy_in_free_fall_is_constant() {
     let svg = plot("free_fall", &[]);
@@ -128,7 +128,7 @@ fn energy_in_free_fall_is_constant() {
     assert!(still < fast / 100.0, "kinetic from {still} to {fast}");
 }
 
-/// At its turning points, the kinetic energy of a pendulum is nearly 0.
+/// At the turning points of a pendulum, its kinetic energy is nearly 0.
 #[test]
 fn energy_of_a_pendulum_goes_back_and_forth() {
     let svg = plot("pendulum", &[]);
@@ -176,7 +176,7 @@ fn the_pictures_of_the_documentation_can_be_made_anew() {
         if name.ends_with(".svg") {
             assert!(kept == anew, "{name} is not what docs/pictures/make makes: run it");
         } else {
-            // Raster pictures are drawn with floats.
+            // Raster pictures may differ a little, because they are drawn with floats.
             assert_eq!(kept[..10], anew[..10], "{name}");
             assert!(kept.len().abs_diff(anew.len()) < kept.len() / 5, "{name}");
         }

@@ -19,7 +19,7 @@ fn line(out: &str) -> Value {
 #[test]
 fn every_limit_has_its_flag() {
     let folder = Folder::new("flags");
-    // A tick takes one work unit, and one for each of the two numbers 1 and -1. 20 ticks take 60.
+    // A tick takes one work unit, and one more for each of the two numbers 1 and -1. So 20 ticks take 60 units.
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for _ in 0..20 {
         recording.step(&add(1, -1)).unwrap();
@@ -47,7 +47,7 @@ fn every_limit_has_its_flag() {
     }
 }
 
-/// A replay of the sandbox with three bodies at the start, five after four ticks, then four.
+/// A replay of the sandbox. It has three bodies at the start, five after four ticks, and four after five ticks.
 fn crowd() -> Vec<u8> {
     let ball = || Command::Spawn {
         body: BodyDef::dynamic(),
@@ -80,7 +80,7 @@ fn bodies_are_counted_at_the_start_and_after_every_tick() {
     }
     let text = run_tool_of(&tool, &["verify", "--max-bodies", "4", &file]).out;
     assert!(text.contains("limit exceeded: 5 bodies, at most 4 are allowed"), "{text}");
-    // Without `Game::world`, a game counts as having no bodies.
+    // A game without `Game::world` counts as a game without bodies.
     let other = folder.write("counter.replay", &replay(3));
     assert_eq!(run(&["verify", "--max-bodies", "0", &other]).exit, Exit::Success);
 }
@@ -128,7 +128,7 @@ fn a_panic_is_the_error_of_other_commands_too() {
             assert!(outcome.err.contains(part), "{arguments:?}: {}", outcome.err);
         }
     }
-    // These do not count the ticks.
+    // These commands do not count the ticks.
     for arguments in [
         vec!["seek", &file, "--tick", "13"],
         vec!["fork", &file, "--tick", "13", "-o", &picture],
@@ -188,7 +188,7 @@ fn what_cannot_be_verified_says_what_it_needs() {
     let folder = Folder::new("needs");
     let later = Recording::<Later>::start(&setup(), 10).unwrap().finish().unwrap();
     let renamed = Recording::<Renamed>::start(&setup(), 10).unwrap().finish().unwrap();
-    // Semantics 2, with the header's checksum (of the bytes before it) repaired.
+    // A header with semantics 2. The checksum of the bytes before it is computed again.
     let mut older = Recording::<Counter>::start(&setup(), 10).unwrap().take_bytes();
     let end = older.len() - 8;
     older[12] = 2;

@@ -69,7 +69,7 @@ fn what_is_whole_of_a_replay_is_described() {
         let (found, exit) = json_of(&[&folder.write("damaged", &damaged)]);
         let ticks = found["ticks"].as_u64().unwrap();
         assert!(ticks >= last && (ticks % 10 == 0 || ticks == 35), "{ticks}");
-        // A damaged length may point beyond the end, so that the file looks cut.
+        // If a damaged length points beyond the end, the file looks cut.
         assert!(found["end"] == "damaged" && exit == Exit::NoMatch || found["end"] == "cut", "{found}");
         last = ticks;
     }

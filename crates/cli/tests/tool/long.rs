@@ -121,7 +121,7 @@ fn a_long_file_is_named_with_its_tick_and_rate() {
     assert_eq!((outcome.out.lines().count(), outcome.exit), (1, Exit::Success));
 }
 
-/// A pipe without a writer takes the place of a file that never ends.
+/// A pipe without a writer stands for a file whose verification never ends.
 #[cfg(unix)]
 #[test]
 fn signals_say_what_was_at_work_and_lose_no_result() {
@@ -146,7 +146,7 @@ fn signals_say_what_was_at_work_and_lose_no_result() {
         let mut first = String::new();
         out.read_line(&mut first).unwrap();
         assert!(first.starts_with(&format!("{before}: match: ")), "{first}");
-        // The result of the third file is held until the second file has a result.
+        // The result of the third file is held, because the second file has no result yet.
         thread::sleep(Duration::from_millis(1500));
         let kill = ["-s", name, &child.id().to_string()].map(String::from);
         assert!(Command::new("kill").args(kill).status().unwrap().success());

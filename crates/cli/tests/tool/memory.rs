@@ -65,12 +65,12 @@ fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     commands
 }
 
-/// A motor joint without springs. The solver solves no such joints in blocks.
+/// A motor joint without springs. The solver does not solve joints of this kind in blocks.
 fn motor() -> Motor {
     Motor::new().linear(Vec2::ZERO, fx!(1)).angular(fx!(0), fx!(1))
 }
 
-/// A replay of a world. The ticks have no commands.
+/// A replay of a world with these commands in its setup. The ticks have no commands.
 fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
     let setup = SandboxSetup { config: Config::default(), commands };
     let mut recording = Recording::<Sandbox>::start(&setup, 5).unwrap();
@@ -80,13 +80,13 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Measures the rows of the table, or without the full sweep only the first.
+/// Measures the rows of the table. Without the full sweep, measures only the first row.
 #[test]
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
     const DEFAULT: &str = "10000000";
-    // The last columns: ticks, limit of work units for a tick, memory in KB. A tick of a million joints is slow to
-    // record.
+    // The last columns are the number of ticks, the limit of work units for a tick, and the memory in KB. Some rows
+    // have one tick, because a tick of a million joints is slow to record.
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("50 000 separate bodies", || field(50_000), 10, DEFAULT, 130_000),
@@ -111,10 +111,10 @@ fn verify_takes_no_more_memory_than_is_documented() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Additional memory in KB of unoptimised code.
+/// Additional memory of unoptimised code, in KB.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
-/// Commands may take a multiple of the memory in KB that the table states for `verify`.
+/// Each command takes at most `times` the memory that the table states for `verify`. `most` is this memory in KB.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
     let folder = Folder::new("memory");
@@ -122,7 +122,7 @@ fn no_tool_takes_more_memory_than_is_documented() {
     fs::write(&dense, replay_of(pile(400), 10)).unwrap();
     fs::write(&wide, replay_of(field(50_000), 10)).unwrap();
     let (honest, mut wrong) = (golden("box_stack"), Vec::new());
-    // Some commands take seconds for the many bodies of `wide`.
+    // Only some files are measured in each run, because some commands take seconds for the many bodies of `wide`.
     let files = sweep::sample([(&dense, 75_000), (&wide, 130_000), (&honest, 10_000)], 2);
     for (file, most) in files {
         for (times, arguments) in [

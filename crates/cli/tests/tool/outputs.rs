@@ -1,4 +1,5 @@
-//! Commands that write a file lose no data with a full disk, a killed process and two writers of the same file.
+//! Commands that write a file lose no data if the disk is full, if their process is killed, or if two processes write
+//! the same file.
 #![cfg(unix)]
 
 use std::fs;
@@ -11,7 +12,7 @@ use crate::{Folder, golden};
 
 pub(crate) const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
 
-/// Contents of an existing file.
+/// Contents of a file that existed before the command.
 pub(crate) const OLD: &[u8] = b"what was there before";
 
 /// Commands that write more than 512 bytes to the file `to`.
@@ -101,7 +102,7 @@ fn a_full_disk_leaves_the_old_file() {
             if has_old {
                 fs::write(&to, OLD).unwrap();
             }
-            // A limit of 512 bytes for each file. Without the signal, writes fail as on a full disk.
+            // Limits each file to 512 bytes. The signal is ignored, so that writes fail as on a full disk.
             let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
             let failed =
                 Command::new("sh").args(["-c", script, "sh", TOOL]).args(forced(&writer)).output().unwrap();
@@ -135,7 +136,7 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
-/// Starts a long recording, and waits until its temporary file has 4000 bytes.
+/// Starts a long recording, and waits until its temporary file has at least 4000 bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];
     let child = Command::new(TOOL).args(arguments).args(extra).stdout(Stdio::null()).spawn().unwrap();
@@ -159,7 +160,7 @@ fn a_killed_process_leaves_the_old_file_and_what_it_recorded() {
     let rescued = folder.path("rescued.replay");
     let trimmed = tool(&["trim", &format!("{to}.unfinished"), "-o", &rescued].map(String::from));
     assert_eq!(trimmed.status.code(), Some(0), "{}", message(&trimmed));
-    // The temporary file blocks no later writer.
+    // The temporary file does not block a later writer.
     let again = tool(&["record", "box_stack", "--ticks", "9", "--force", "-o", &to].map(String::from));
     assert_eq!(again.status.code(), Some(0), "{}", message(&again));
     assert_eq!(names(&folder), ["rescued.replay", "x.replay"]);

@@ -36,7 +36,7 @@ fn check(folder: &Folder, path: &str, more: &[&str]) -> (Exit, Vec<Value>) {
     (checked.exit, checked.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect())
 }
 
-/// Exit code, and for one file the state of its signatures and the signers.
+/// Exit code of `verify --keys`, and for one file the state of its signatures and the signers.
 fn signers(folder: &Folder, file: &str, more: &[&str]) -> (Exit, String, Vec<String>) {
     let (exit, lines) = check(folder, file, more);
     let names = lines[0]["signed_by"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().into());
@@ -104,7 +104,7 @@ fn players_sign_the_same_file_and_a_number_of_them_is_required() {
     let too_few = not_valid("missing", &["alice", "server"]);
     assert_eq!(signers(&folder, "a.replay", &["--require", "3"]), too_few);
 
-    // Two keys of one owner count as one name.
+    // Two keys of the same owner count as one name.
     let keys = fs::read_to_string(folder.path("keys")).unwrap();
     folder.write("keys", keys.replace(" server\n", " alice\n").as_bytes());
     assert_eq!(signers(&folder, "a.replay", &["--require", "2"]), not_valid("missing", &["alice"]));
@@ -250,7 +250,7 @@ fn keys_that_anybody_could_sign_for_are_refused() {
     }
 }
 
-/// The next pseudorandom number: SplitMix64 without its last multiplication.
+/// The next pseudorandom number, by SplitMix64 without its last multiplication.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -265,7 +265,7 @@ fn mutate(bytes: &mut Vec<u8>, state: &mut u64) {
         let byte = random(state).to_le_bytes()[0];
         match random(state) % 7 {
             0 if !bytes.is_empty() => bytes[at] ^= 1 << (byte % 8),
-            // A hexadecimal digit, so that the line often stays well-formed.
+            // Writes a hexadecimal digit, so that the line often stays well-formed.
             1 if !bytes.is_empty() => bytes[at] = b"0123456789abcdef"[usize::from(byte % 16)],
             2 if !bytes.is_empty() => drop(bytes.remove(at)),
             3 => bytes.insert(at, byte),

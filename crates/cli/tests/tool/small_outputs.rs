@@ -1,4 +1,5 @@
-//! Keys, signature files and cache entries lose no data with a full disk, a killed process and two writers.
+//! Keys, signature files and cache entries lose no data if the disk is full, if a process is killed, or if two
+//! processes write the same file.
 #![cfg(unix)]
 #![expect(clippy::disallowed_types, reason = "kills come at moments of a run whose length is measured")]
 
@@ -21,13 +22,13 @@ fn start(arguments: &[&str]) -> Child {
     command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Runs the tool with a file size limit of 0 bytes: writes fail as on a full disk.
+/// Runs the tool with a file size limit of 0 bytes, so that writes fail as on a full disk.
 fn tool_without_space(arguments: &[&str]) -> Output {
     let script = "trap '' XFSZ; ulimit -f 0; exec \"$@\"";
     Command::new("sh").args(["-c", script, "sh", TOOL]).args(arguments).output().unwrap()
 }
 
-/// Starts the tool and kills it after some microseconds, unless it has ended before.
+/// Starts the tool and kills it after some microseconds, unless it has already ended.
 fn kill_after(microseconds: u64, arguments: &[&str]) {
     let mut child = start(arguments);
     std::thread::sleep(Duration::from_micros(microseconds));
@@ -40,8 +41,8 @@ fn shuffled(round: u64, range: u64) -> u64 {
     round * 7919 % range
 }
 
-/// Kills the tool at random moments, until both outputs were found, and at least `rounds` times. `prepare` restores the
-/// old output.
+/// Kills the tool at random moments, at least `rounds` times, until some runs left the old output and some the new one.
+/// `prepare` restores the old output.
 fn kill_often(arguments: &[&str], rounds: u64, prepare: impl Fn(), is_new: impl Fn() -> bool) {
     let start = Instant::now();
     prepare();
@@ -175,7 +176,7 @@ fn whoever_signs_at_the_same_time_is_in_the_file_or_is_told() {
     assert!(told > 0, "no signer has found the file locked by another");
 }
 
-/// Lines of `verify --json` as if nothing were cached, and the standard error.
+/// Lines of `verify --json` with every `cached` set to false, and the standard error.
 fn verify(output: &Output) -> (Vec<String>, String) {
     let lines = String::from_utf8(output.stdout.clone()).unwrap();
     (lines.lines().map(|line| line.replace("\"cached\":true", "\"cached\":false")).collect(), message(output))
@@ -223,7 +224,7 @@ fn kills_and_other_writers_leave_whole_entries_in_a_cache() {
         }
         let [.., survivor] = writers;
         assert_eq!(verify(&survivor.wait_with_output().unwrap()).0, expected);
-        // A file without an entry would not be marked as cached.
+        // The second run shows that every file has an entry: a file without an entry would not be marked as cached.
         let again = tool(&arguments);
         assert_eq!(verify(&again).0, expected);
         assert_eq!(String::from_utf8_lossy(&again.stdout).matches("\"cached\":true").count(), expected.len());
@@ -263,7 +264,7 @@ fn the_shortest_failing_replay_is_written_as_a_whole() {
             assert_eq!(told, "");
             return;
         }
-        // The second process has locked the file between its creation and its lock by the first.
+        // The first process creates the file before it locks it. The second process locked it in between.
         assert!(told.contains("another process is writing it"), "{told}");
     }
     panic!("the first process should usually lock the file first");

@@ -1,4 +1,4 @@
-//! `stats`: the figures of every tick, and the largest and mean of each.
+//! `stats`: the figures of every tick, and the largest and the mean value of each figure.
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::{Limits, Step, VerifiedReplay};

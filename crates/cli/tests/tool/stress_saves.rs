@@ -116,7 +116,8 @@ fn the_tick_of_a_fault_is_said() {
     );
     assert_eq!(document["minimised"], Json::Null);
 
-    // No difference before the bonus counts, nor without it.
+    // No difference is found if the play ends before the bonus counts, or if the comparison begins after it has
+    // counted.
     for more in [["--to", "70"], ["--from", "71"]] {
         assert_eq!(stress_saves(&folder, &forgetful(), &more).exit, Exit::Success, "{more:?}");
     }

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
-/// Ticks of the trimmed file and the text of the error stream; `None` if nothing could be kept.
+/// Number of ticks of the trimmed file, and the text of the error stream. `None` if nothing could be kept.
 fn trimmed(folder: &Folder, bytes: &[u8], more: &[&str]) -> Option<(u64, String)> {
     let (file, new) = (folder.write("a.replay", bytes), folder.path("new.replay"));
     let outcome = run(&[&["trim", &file, "-o", &new], more].concat());
@@ -58,7 +58,7 @@ fn in_front_of_damage_it_is_kept() {
         let mut damaged = whole.clone();
         damaged[at] ^= 1;
         if let Some((ticks, message)) = trimmed(&folder, &damaged, &[]) {
-            // A damaged length beyond the end makes the file look cut.
+            // If a damaged length points beyond the end, the file looks cut.
             assert!(message.is_empty() || message.contains("left out:"), "{message}");
             kept.push(ticks);
         }
@@ -81,7 +81,7 @@ fn a_complete_replay_stays_or_becomes_shorter() {
     assert_eq!(fs::read(&new).unwrap(), fs::read(golden("chain")).unwrap());
 }
 
-/// The checksums are right, but from tick 25 on the recorded states are wrong.
+/// The checksums of this replay are right, but from tick 25 on the recorded states are wrong.
 #[test]
 fn where_a_replay_leaves_the_rules_it_ends() {
     let folder = Folder::new("trim-diverged");

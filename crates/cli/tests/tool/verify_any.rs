@@ -1,4 +1,4 @@
-//! The script `docs/verify-any` hands files that the newest program cannot verify to older programs.
+//! The script `docs/verify-any` passes files that the newest program cannot verify to older programs.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -9,7 +9,8 @@ use serde_json::Value;
 
 use crate::Folder;
 
-/// A replay of the sandbox, and its header with other semantics, which needs another program.
+/// A replay of the sandbox, and the header of this replay with other semantics. Another program is needed to verify the
+/// second file.
 fn replays() -> (Vec<u8>, Vec<u8>) {
     let good = fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../replays/free_fall.replay")).unwrap();
     let length = |at: usize| u32::from_le_bytes(good[at..at + 4].try_into().unwrap()) as usize;
@@ -46,7 +47,7 @@ fn what_another_program_can_verify_goes_there() {
     };
     assert_eq!(verify_any(&[]), (expect("unverifiable"), Some(1)));
 
-    // The older program accepts its file and is given the same flags.
+    // The older program accepts only its file, and only with the same flags.
     let program = r#"#!/bin/sh
 [ "$*" = "verify --json $3 --max-ticks 100000" ] || exit 2
 printf '{"file":"%s","verdict":"match"}\n' "$3"

@@ -19,11 +19,11 @@ use super::queue::{Next, Queue};
 use super::rooms::Full;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
-/// Longest handshake, and longest wait for the first frame after it.
+/// Longest handshake. Also the longest wait for the first frame after the handshake.
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;
-/// Pings within the idle time.
+/// Number of pings in the idle time.
 const PINGS: u32 = 3;
 
 // Reasons to close a connection: code and text.
@@ -68,7 +68,7 @@ pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Erro
     }
 }
 
-/// The room code of a request, in capital letters, or the status of the refusal.
+/// Returns the room code of a request, in capital letters. If the request is refused, returns the status.
 fn admitted(request: &Request, origins: &[String]) -> Result<String, StatusCode> {
     let origin = request.headers().get("origin").map(|origin| origin.as_bytes());
     if origin.is_some_and(|origin| {
@@ -88,7 +88,7 @@ fn refusal(status: StatusCode) -> ErrorResponse {
     response
 }
 
-/// The first binary frame; `None` if the connection ends before.
+/// The first binary frame. `None` if the connection ends before it.
 async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     while let Some(message) = socket.next().await {
         if let Message::Binary(bytes) = message? {
@@ -98,8 +98,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// A hash does not reveal the secret. Since the address follows from the secret, it survives a lost connection or a
-/// restart of the relay, and the relay stores nothing.
+/// The address of the member with this secret. The address is a hash, which does not reveal the secret. The same secret
+/// always gives the same address, also after a lost connection or a restart of the relay. So the relay stores nothing.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
@@ -147,7 +147,7 @@ impl Connection<'_> {
                         Next::Members => self.members(),
                         Next::Replaced => return close(&mut self.socket, CLOSE_REPLACED).await,
                     };
-                    // A member that does not read counts as gone.
+                    // A member that does not read for the idle time counts as gone.
                     let Ok(sent) = timeout(idle, self.socket.send(message)).await else { return Ok(()) };
                     sent?;
                 }
@@ -163,7 +163,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram with the sender's address in place of the receiver's.
+    /// Forwards a datagram. In the frame, the address of the receiver is replaced by that of the sender.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)

@@ -11,20 +11,20 @@ pub struct Limits {
     pub rooms: usize,
     /// Largest number of members of a room.
     pub members: usize,
-    /// Largest datagram in bytes. A larger one closes the connection.
+    /// Largest datagram in bytes. A larger datagram closes the connection.
     pub datagram_bytes: usize,
-    /// Bytes that may wait for a member. Beyond them, the oldest datagrams are dropped.
+    /// Maximum number of bytes that wait for a member. If there are more, the oldest datagrams are dropped.
     pub queue_bytes: usize,
-    /// Bytes per second from a member, with bursts of one second. Further datagrams are dropped, and eight times as
-    /// many bytes close the connection.
+    /// Maximum number of bytes per second from a member, with bursts of one second. Datagrams above this rate are
+    /// dropped. A rate eight times as high closes the connection.
     pub bytes_per_second: u32,
-    /// Datagrams per second from a member, with bursts of one second. Further ones are dropped, and eight times as many
-    /// close the connection.
+    /// Maximum number of datagrams per second from a member, with bursts of one second. Datagrams above this rate are
+    /// dropped. A rate eight times as high closes the connection.
     pub datagrams_per_second: u32,
-    /// Silence after which a member, pinged three times meanwhile, is disconnected.
+    /// A member that sends nothing for this time is disconnected. In the meantime, it is pinged three times.
     pub idle: Duration,
-    /// Origins of web pages that may connect; empty for all. Clients without an origin, such as native ones, are
-    /// admitted.
+    /// Origins of web pages that may connect. If empty, all may. Clients without an origin, such as native ones, are
+    /// always admitted.
     pub origins: Vec<String>,
 }
 

@@ -2,14 +2,14 @@
 
 use core::time::Duration;
 
-/// Multiple of the allowed rate that closes a connection.
+/// A connection is closed at this multiple of the allowed rate.
 const EXCESS: u64 = 8;
 
 const MICROS: u64 = 1_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pace {
-    /// Within the rate.
+    /// The datagram is within the rate.
     Fine,
     /// The datagram is dropped.
     Fast,
@@ -17,7 +17,7 @@ pub(super) enum Pace {
     Flood,
 }
 
-/// A token bucket of one second.
+/// A token bucket, which holds at most the units of one second.
 #[derive(Clone, Debug)]
 struct Bucket {
     per_second: u64,
@@ -44,9 +44,9 @@ impl Bucket {
 
 #[derive(Clone, Debug)]
 pub(super) struct Meter {
-    /// Buckets of bytes and of datagrams. Beyond them, a datagram is dropped.
+    /// Buckets of bytes and of datagrams. If one of them is empty, a datagram is dropped.
     allowed: [Bucket; 2],
-    /// [`EXCESS`] times the rates of `allowed`. Beyond them, the connection is closed.
+    /// Buckets with [`EXCESS`] times the rates of `allowed`. If one of them is empty, the connection is closed.
     tolerated: [Bucket; 2],
     last: Duration,
 }

@@ -53,13 +53,13 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Accepts connections until the future is dropped. Accepted ones then go on until they end or the runtime is
-    /// dropped.
+    /// Accepts connections until the future is dropped. Connections that were accepted before then continue until they
+    /// end or the runtime is dropped.
     pub async fn run(self) {
         let places = Arc::new(Semaphore::new(self.limits.connections));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });
         loop {
-            // Without a free place, connections wait in the backlog of the system.
+            // At the limit of connections, further ones wait in the backlog of the system.
             let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
             let Ok((stream, _)) = self.listener.accept().await else {
                 // The error may be temporary, such as too many open files.
@@ -68,7 +68,7 @@ impl Server {
             };
             let shared = Arc::clone(&shared);
             tokio::spawn(async move {
-                // An error affects this member alone.
+                // An error affects only this member.
                 let _ = connection::serve(&shared, stream).await;
                 drop(place);
             });

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::Notify;
 
-/// Frames for a member, bounded by their bytes.
+/// Frames that wait for a member. Their total size is limited.
 pub(super) struct Queue {
     state: Mutex<State>,
     changed: Notify,
@@ -16,9 +16,9 @@ pub(super) struct Queue {
 struct State {
     frames: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// The members have changed since the last message about them.
+    /// Whether the members have changed since the last message about them.
     room_changed: bool,
-    /// A newer connection of this member replaces this one.
+    /// Whether a newer connection of this member replaces this one.
     replaced: bool,
 }
 
@@ -38,7 +38,7 @@ impl Queue {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Appends a frame, and drops the oldest ones beyond the limit.
+    /// Appends a frame. Drops the oldest frames while the limit is exceeded.
     pub(super) fn push(&self, frame: Vec<u8>) {
         let mut state = self.state();
         state.bytes += frame.len();

@@ -13,7 +13,7 @@ pub(super) enum Full {
     Relay,
 }
 
-/// Rooms by code. A room exists while it has members.
+/// Rooms by code. A room is removed when its last member leaves.
 #[derive(Default)]
 pub(super) struct Rooms(Mutex<BTreeMap<String, Room>>);
 
@@ -25,7 +25,7 @@ impl Rooms {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Replaces an existing connection of this member.
+    /// Adds a connection to a room. If the member already has one, the new connection replaces it.
     pub(super) fn enter(
         &self,
         code: &str,
@@ -50,7 +50,7 @@ impl Rooms {
         Ok(())
     }
 
-    /// Removes a connection, unless a newer one has its place.
+    /// Removes a connection. Has no effect if a newer connection has replaced it.
     pub(super) fn leave(&self, code: &str, queue: &Arc<Queue>) {
         let mut rooms = self.rooms();
         let Some(room) = rooms.get_mut(code) else { return };
@@ -61,7 +61,7 @@ impl Rooms {
         }
     }
 
-    /// Drops a frame for an address without a member.
+    /// Passes a frame to the member `to`. Drops the frame if there is no such member.
     pub(super) fn forward(&self, code: &str, to: Member, frame: Vec<u8>) {
         let queue = {
             let rooms = self.rooms();
@@ -73,7 +73,7 @@ impl Rooms {
         }
     }
 
-    /// The members of a room, as seen by `you`.
+    /// The members of a room, as a message to the member `you`.
     pub(super) fn members(&self, code: &str, you: Member) -> Members {
         let rooms = self.rooms();
         let room = rooms.get(code).map_or(&[][..], Vec::as_slice);

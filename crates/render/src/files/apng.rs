@@ -11,13 +11,13 @@ use crate::raster::Image;
 
 pub(super) struct Apng<W: Write> {
     pace: Pace,
-    /// Remaining frames.
+    /// Number of frames that are still to be added.
     frames: u32,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// The header needs the size of the first frame.
+    /// The header is not written yet, because it needs the size of the first frame.
     Empty(Option<W>),
     Begun {
         writer: Writer<W>,
@@ -72,8 +72,8 @@ fn begin<W: Write>(writer: W, pace: Pace, frames: u32, frame: &Image) -> io::Res
     Ok(writer)
 }
 
-/// Writes the bounding rectangle of the changed pixels. In an opaque frame, unchanged pixels are transparent, which
-/// compresses best. Another frame replaces the rectangle.
+/// Writes the bounding rectangle of the changed pixels. If the frame is opaque, unchanged pixels are written as
+/// transparent ones, which compresses best. If it is not opaque, the rectangle is replaced as a whole.
 fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image) -> io::Result<()> {
     let has_changed = |pixel: usize| colour(shown, pixel) != colour(frame, pixel);
     let region = Region::around((frame.width(), frame.height()), has_changed);
@@ -83,7 +83,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
         .pixels(frame.width())
         .flat_map(|pixel| if is_opaque && !has_changed(pixel) { &nothing[..] } else { colour(frame, pixel) });
     let changes: Vec<u8> = changes.copied().collect();
-    // Otherwise the encoder would check the new dimension against the old position.
+    // Without the reset, the encoder would check the new dimension against the old position.
     writer.reset_frame_position().map_err(failed)?;
     writer.set_frame_dimension(region.width, region.height).map_err(failed)?;
     writer.set_frame_position(region.left, region.top).map_err(failed)?;
@@ -91,7 +91,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
     writer.write_image_data(&changes).map_err(failed)
 }
 
-/// Red, green, blue and opacity.
+/// Red, green, blue and opacity of a pixel.
 fn colour(image: &Image, pixel: usize) -> &[u8] {
     &image.rgba()[pixel * 4..pixel * 4 + 4]
 }

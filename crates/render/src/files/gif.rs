@@ -14,13 +14,13 @@ use crate::raster::Image;
 pub(super) struct Gif<W: Write> {
     pace: Pace,
     frames: u64,
-    /// Colours of announced frames.
+    /// Numbers of pixels of each colour in the announced frames.
     samples: Counts,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// The header needs the size and colours of the first frame.
+    /// The header is not written yet, because it needs the size and colours of the first frame.
     Empty(Option<W>),
     Begun(Box<Begun<W>>),
 }
@@ -29,9 +29,9 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether each frame contains the palette, because it differs from the global one.
+    /// Whether each frame contains the current palette, because this palette differs from the global one.
     is_local: bool,
-    /// Picture after the last frame.
+    /// Picture that is shown after the last frame.
     shown: Vec<[u8; 3]>,
 }
 

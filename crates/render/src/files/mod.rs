@@ -13,7 +13,7 @@ use crate::raster::Image;
 
 pub use pace::Pace;
 
-/// Animation that repeats forever, written frame by frame with bounded memory.
+/// Animation that repeats forever. It is written frame by frame, with bounded memory.
 ///
 /// Frames after the first contain only the bounding rectangle of the changed pixels.
 ///
@@ -39,8 +39,9 @@ enum Format<W: Write> {
 }
 
 impl<W: Write> Animation<W> {
-    /// Starts a GIF. Frames with up to 255 colours are exact, except the first one if it and the announced frames have
-    /// more. Others use the nearest of up to 255 colours. Translucent pixels become opaque.
+    /// Starts a GIF. Frames with up to 255 colours are exact. The first frame is exact only if it and the announced
+    /// frames together have up to 255 colours. Other frames use the nearest of up to 255 colours. Translucent pixels
+    /// become opaque.
     pub fn gif(writer: W, pace: Pace) -> Self {
         Animation(Format::Gif(gif::Gif::new(writer, pace)))
     }
@@ -50,8 +51,8 @@ impl<W: Write> Animation<W> {
         Animation(Format::Apng(Box::new(apng::Apng::new(writer, pace, frames))))
     }
 
-    /// Announces the colours of a later frame. A GIF has a global palette for the first frame and the announced ones. A
-    /// frame that it does not suit, and all later ones, have palettes of their own.
+    /// Announces the colours of a later frame. The global palette of a GIF is made for the first frame and the
+    /// announced frames. From the first frame that it does not suit, frames contain palettes of their own.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),
@@ -59,7 +60,7 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Adds a frame, of the size of the first.
+    /// Adds a frame. All frames must have the size of the first.
     ///
     /// # Errors
     ///
@@ -72,7 +73,7 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Writes the end of the file, which is incomplete without it.
+    /// Writes the end of the file. Without it, the file is incomplete.
     ///
     /// # Errors
     ///

@@ -10,7 +10,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Duration of frame `frame`, from 0, in hundredths of a second. Rounding errors do not accumulate.
+    /// Duration of a frame in hundredths of a second. `frame` counts from 0. Rounding errors do not accumulate.
     pub(super) fn hundredths(self, frame: u64) -> u16 {
         let end = |frames: u64| {
             let (ticks, rate) = (u128::from(self.ticks.max(1)), u128::from(self.tick_rate.max(1)));
@@ -19,7 +19,7 @@ impl Pace {
         u16::try_from(end(frame + 1) - end(frame)).unwrap_or(u16::MAX)
     }
 
-    /// Duration of a frame in seconds, as numerator and denominator of up to 16 bits.
+    /// Duration of a frame in seconds, as a numerator and a denominator of at most 16 bits each.
     pub(super) fn fraction(self) -> (u16, u16) {
         let (mut above, mut below) = (self.ticks.max(1), self.tick_rate.max(1));
         let common = gcd(above, below);

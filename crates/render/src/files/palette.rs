@@ -1,25 +1,26 @@
-//! [`Palette`]: at most 255 colours for a frame, and a transparent one.
+//! [`Palette`]: at most 255 colours for a frame, and a transparent colour.
 //!
-//! Up to 255 colours are kept exactly. If there are more, the most frequent ones are kept, because shifts in large
-//! areas are visible. The others are divided into boxes with a mean colour each: the box with the largest sum of
-//! squared errors in a channel is split at the mean of that channel, until there are enough.
+//! Up to 255 colours are kept exactly. If there are more, only the most frequent colours are kept exactly, because
+//! changes of colour are visible in large areas. The other colours are divided into boxes, and each box gives its mean
+//! colour. Until there are enough boxes, one is split: the box with the largest sum of squared errors in a channel, at
+//! the mean of that channel.
 
 use std::collections::BTreeMap;
 
 type Rgb = [u8; 3];
 
-/// Colours of a palette. The remaining index is for pixels that do not change.
+/// Maximum number of colours in a palette. The remaining index is for pixels that do not change.
 const COLOURS_MAX: usize = 255;
-/// Most frequent colours that are kept exactly if there are too many.
+/// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
-/// Largest error per channel at which a frame uses an existing palette, except for stray colours.
+/// Largest error per channel with which a frame uses an existing palette. Stray colours may have larger errors.
 const ERROR_MAX: u8 = 24;
-/// A stray colour has at most one pixel per this number of pixels.
+/// A colour is stray if at most one in this number of pixels has it.
 const PIXELS_OF_A_STRAY: u64 = 20_000;
-/// Largest cache of nearest colours.
+/// Maximum number of colours in the cache of nearest colours.
 const REMEMBERED_MAX: usize = 1 << 16;
 
-/// Pixels of each colour.
+/// Number of pixels of each colour.
 #[derive(Default)]
 pub(super) struct Counts {
     counts: BTreeMap<Rgb, u64>,
@@ -55,7 +56,7 @@ impl Counts {
 
 pub(super) struct Palette {
     colours: Vec<Rgb>,
-    /// Index of the nearest colour, cached for colours outside of the palette.
+    /// Index of the nearest colour of the palette. Contains the palette itself, and a cache for other colours.
     nearest: BTreeMap<Rgb, u8>,
 }
 
@@ -76,7 +77,7 @@ impl Palette {
         palette
     }
 
-    /// Whether the palette suits a frame. A frame of at most 255 colours has to fit exactly.
+    /// Whether the palette suits a frame. If the frame has at most 255 colours, all must be in the palette.
     pub(super) fn suits(&mut self, counts: &Counts) -> bool {
         let is_exact = counts.counts.len() <= COLOURS_MAX;
         let stray = counts.pixels / PIXELS_OF_A_STRAY;
@@ -113,18 +114,18 @@ impl Palette {
         u8::try_from(self.colours.len()).unwrap_or(u8::MAX)
     }
 
-    /// Red, green and blue of all indices.
+    /// Red, green and blue of each index, including the transparent one.
     pub(super) fn table(&self) -> Vec<u8> {
         self.colours.iter().chain(&[[0; 3]]).flatten().copied().collect()
     }
 
-    /// Resets the cache.
+    /// Resets the cache to the colours of the palette.
     fn remember(&mut self) {
         self.nearest = self.colours.iter().copied().zip(0..=u8::MAX).collect();
     }
 }
 
-/// Divides colours into at most `count` boxes. Returns their mean colours and numbers of pixels.
+/// Divides colours into at most `count` boxes. Returns the mean colour and the number of pixels of each box.
 fn boxes(colours: Vec<(Rgb, u64)>, count: usize) -> Vec<(Rgb, u64)> {
     let mut boxes = vec![Box::of(colours)];
     while boxes.len() < count {
@@ -152,7 +153,7 @@ impl Box {
         let pixels: u64 = colours.iter().map(|(_, count)| count).sum();
         let sum =
             |channel: usize| colours.iter().map(|(colour, count)| u64::from(colour[channel]) * count).sum();
-        // Rounding down leaves no side empty after a split at the mean.
+        // The mean is rounded down, so that a split at the mean leaves neither side empty.
         let mean = [0, 1, 2].map(|channel| u64::checked_div(sum(channel), pixels).unwrap_or(0) as u8);
         let error = |channel: usize| -> u64 {
             let errors = colours
@@ -200,7 +201,7 @@ mod tests {
             let index = palette.index(colour);
             assert_eq!(palette.colour(index), colour);
         }
-        // 159 boxes for 4096 colours: about 3 per box in each direction.
+        // 4096 colours in 159 boxes: a box has about 3 colours in each direction.
         for colour in edges {
             let index = palette.index(colour);
             let found = palette.colour(index);

@@ -9,8 +9,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Bounding rectangle of the pixels for whose index in row order `has_changed` is true. If there are none, the
-    /// first pixel, because a frame cannot be empty.
+    /// Bounding rectangle of the pixels for which `has_changed` is true. Its argument is the index of a pixel in row
+    /// order. If there are no such pixels, returns the first pixel, because a frame cannot be empty.
     pub(super) fn around((width, height): (u32, u32), has_changed: impl Fn(usize) -> bool) -> Self {
         let columns = width as usize;
         let row = |y: u32| y as usize * columns..(y as usize + 1) * columns;
@@ -22,7 +22,7 @@ impl Region {
         let (mut left, mut right) = (columns, 0);
         for y in top..=bottom {
             let start = row(y).start;
-            // Only columns outside can widen the rectangle.
+            // Only columns outside of the rectangle can widen it.
             left = (0..left).find(|x| has_changed(start + x)).unwrap_or(left);
             right = (right..columns).rfind(|x| has_changed(start + x)).unwrap_or(right);
         }
@@ -30,7 +30,7 @@ impl Region {
         Region { left, top, width: right + 1 - left, height: bottom + 1 - top }
     }
 
-    /// Indices of its pixels in an image of this width.
+    /// Indices of the region's pixels in an image of this width.
     pub(super) fn pixels(self, width: u32) -> impl Iterator<Item = usize> {
         let rows = self.top..self.top + self.height;
         rows.flat_map(move |y| {
@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn it_is_as_small_as_it_can_be() {
         let (width, height) = (7u32, 5u32);
-        // Every pair of pixels, and every single pixel.
+        // Tests every pair of pixels, and every single pixel.
         for a in 0..35usize {
             for b in 0..35usize {
                 let region = Region::around((width, height), |pixel| pixel == a || pixel == b);

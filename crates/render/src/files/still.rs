@@ -8,7 +8,7 @@ use super::failed;
 use crate::raster::Image;
 
 impl Image {
-    /// Writes a PNG file, in RGBA if the image is not opaque.
+    /// Writes a PNG file. If the image is not opaque, the file is in RGBA.
     ///
     /// # Errors
     ///
@@ -29,7 +29,7 @@ impl Image {
         png.finish().map_err(failed)
     }
 
-    /// Bytes of a PNG file.
+    /// Returns the bytes of a PNG file.
     #[must_use]
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();

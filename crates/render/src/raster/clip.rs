@@ -1,11 +1,12 @@
 //! Clips polygons and lines to the surroundings of the image.
 //!
-//! The rasteriser's fixed-point coordinates overflow for points a billion pixels away, to which a floor easily extends
-//! when the camera is zoomed in.
+//! The rasteriser has fixed-point coordinates, which overflow for points a billion pixels away. A floor easily extends
+//! so far when the camera is zoomed in.
 
 use tiny_skia::{Path, PathBuilder};
 
-/// Distance of clipping from the image, in pixels: the border is invisible for strokes up to this width.
+/// Distance from the image at which shapes are clipped, in pixels. The border of a clipped shape is invisible for
+/// strokes up to this width.
 const MARGIN: f32 = 2048.0;
 
 pub(super) struct Area {
@@ -17,7 +18,8 @@ impl Area {
         Area { size: [width as f32, height as f32] }
     }
 
-    /// Whether the bounding box of points, with a margin, overlaps the image; `false` if a coordinate is not finite.
+    /// Whether the bounding box of points, extended by a margin, overlaps the image. `false` if a coordinate is not
+    /// finite.
     pub(super) fn is_touched(&self, points: &[[f32; 2]], margin: f32) -> bool {
         let margin = margin.min(MARGIN);
         !points.is_empty()
@@ -29,17 +31,17 @@ impl Area {
             })
     }
 
-    /// Whether points lie outside the margin.
+    /// Whether any point lies further than [`MARGIN`] from the image.
     pub(super) fn is_exceeded(&self, points: &[[f32; 2]]) -> bool {
         points.iter().any(|&point| self.sides().iter().any(|side| !side.has(point)))
     }
 
-    /// Clips a convex polygon (Sutherland and Hodgman).
+    /// Clips a convex polygon (Sutherland and Hodgman). Returns its corners.
     pub(super) fn polygon(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         self.sides().iter().fold(points.to_vec(), |points, side| side.cut(&points))
     }
 
-    /// Clips a line through points, possibly into several parts.
+    /// Clips a line through points. The result may consist of several parts.
     pub(super) fn lines(&self, points: &[[f32; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         let back = closed.then(|| points.first()).flatten();
@@ -64,7 +66,7 @@ impl Area {
         Some([from, to])
     }
 
-    /// The area is the intersection of four half planes.
+    /// The sides of the area, which is the intersection of four half planes.
     fn sides(&self) -> [Side; 4] {
         let [width, height] = self.size;
         let low = |axis| Side { axis, sign: -1.0, bound: -MARGIN };
@@ -73,7 +75,7 @@ impl Area {
     }
 }
 
-/// A coordinate is at most the bound, or at least the bound if the sign is negative.
+/// A half plane. In it, a coordinate is at most `bound`, or at least `bound` if the sign is negative.
 struct Side {
     axis: usize,
     sign: f32,
@@ -85,7 +87,7 @@ impl Side {
         (point[self.axis] - self.bound) * self.sign <= 0.0
     }
 
-    /// The crossing of a line and the bound, exact on that axis for any length.
+    /// The point where a line crosses the bound. On the axis of the bound it is exact, for a line of any length.
     fn crossing(&self, from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
         let (a, b) = (from.map(f64::from), to.map(f64::from));
         let share = (f64::from(self.bound) - a[self.axis]) / (b[self.axis] - a[self.axis]);
@@ -94,7 +96,7 @@ impl Side {
         crossing
     }
 
-    /// The part of a convex polygon inside.
+    /// The part of a convex polygon inside the half plane.
     fn cut(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         let mut kept = Vec::with_capacity(points.len() + 2);
         for (i, &to) in points.iter().enumerate() {

@@ -53,7 +53,7 @@ impl Image {
         &self.rgba
     }
 
-    /// A pixel; `None` outside the image.
+    /// A pixel. `None` if it is outside of the image.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<Colour> {
         if x >= self.width || y >= self.height {

@@ -15,7 +15,7 @@ pub use image::Image;
 /// Maximum side length of an image, in pixels.
 pub const SIDE_MAX: u32 = 16384;
 
-/// Draws a list on a background, antialiased. Sides are clamped to 1 to [`SIDE_MAX`].
+/// Draws a list on a background, antialiased. The side lengths of the image are clamped to 1 to [`SIDE_MAX`].
 #[must_use]
 pub fn raster(list: &DrawList, (width, height): (u32, u32), background: Colour) -> Image {
     let (width, height) = (width.clamp(1, SIDE_MAX), height.clamp(1, SIDE_MAX));
@@ -156,7 +156,7 @@ mod tests {
         assert!(image.is_opaque() && !clear.is_opaque());
     }
 
-    /// Shapes may extend a billion pixels and more.
+    /// A shape may extend a billion pixels and more.
     #[test]
     fn far_corners_change_nothing_that_is_seen() {
         let wide = |reach: f32| {

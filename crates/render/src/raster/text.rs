@@ -7,10 +7,10 @@ use crate::glyphs::{GLYPH_HEIGHT, GLYPH_WIDTH, Glyph, glyph};
 use crate::list::Text;
 use crate::text::{CELL_HEIGHT, CELL_WIDTH};
 
-/// Text scales that are drawn.
+/// Range of text scales. Text with another scale is not drawn.
 const SCALES: std::ops::RangeInclusive<f32> = 0.1..=64.0;
 
-/// Pixels are those of the font at scale 1, and interpolated at others.
+/// Draws a line of text. At scale 1, its pixels are those of the font. At other scales, they are interpolated.
 pub(super) fn draw(pixels: &mut Pixmap, line: &Text) {
     let far = 2.0 * super::SIDE_MAX as f32;
     let is_near = line.at.iter().all(|coordinate| coordinate.abs() <= far);
@@ -32,7 +32,7 @@ pub(super) fn draw(pixels: &mut Pixmap, line: &Text) {
 fn draw_glyph(pixels: &mut Pixmap, glyph: &Glyph, [left, top]: [f32; 2], scale: f32, colour: Colour) {
     let (columns, rows) = ((CELL_WIDTH * scale).ceil(), (CELL_HEIGHT * scale).ceil());
     let (width, height) = (pixels.width(), pixels.height());
-    // Whole numbers below 100 000 convert exactly.
+    // The casts are exact for whole numbers below 100 000.
     let range = |from: f32, count: f32, end: u32| {
         (from.max(0.0) as u32).min(end)..((from + count).max(0.0) as u32).min(end)
     };
@@ -51,7 +51,7 @@ fn draw_glyph(pixels: &mut Pixmap, glyph: &Glyph, [left, top]: [f32; 2], scale: 
     }
 }
 
-/// Interpolates the coverage bilinearly.
+/// Coverage at a position in the glyph, interpolated bilinearly.
 fn mixed(glyph: &Glyph, x: f32, y: f32) -> f32 {
     let at = |column: f32, row: f32| {
         let inside = (0.0..GLYPH_WIDTH as f32).contains(&column) && (0.0..GLYPH_HEIGHT as f32).contains(&row);

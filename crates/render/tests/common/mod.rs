@@ -2,7 +2,7 @@
 
 use lockstep2d_render::{Colour, DrawList, Image, raster};
 
-/// Far more colours than a GIF can have.
+/// A picture with far more colours than a GIF can have.
 pub(crate) fn colourful(frame: u32, size: (u32, u32)) -> Image {
     let mut list = DrawList::default();
     for i in 0..40u32 {

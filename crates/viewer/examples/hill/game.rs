@@ -21,7 +21,7 @@ pub(crate) struct Drive {
 pub(crate) struct Hill {
     world: World,
     pub(crate) goals: u32,
-    /// Ticks until the next shell.
+    /// Number of ticks until the car can fire again.
     reload: u32,
 }
 
@@ -39,7 +39,7 @@ const BRIDGE: (i32, i32) = (12, 12 + PLANKS);
 /// Force at which a joint of the bridge breaks, in N.
 const STRENGTH: Fx = fx!(200);
 const RELOAD: u32 = 30;
-/// Ticks after which a shell is removed.
+/// Number of ticks after which a shell is removed.
 const SHELL_TIME: u64 = 300;
 /// Largest torque at a wheel, in N m.
 const TORQUE: Fx = fx!(3);
@@ -95,7 +95,7 @@ impl Hill {
             let place = self.world.body(car).map_or(Vec2::ZERO, |body| body.position());
             let shell = ShapeDef::new(Geometry::circle(fx!(0.12))?).density(fx!(8));
             let def = BodyDef::dynamic().position(place + Vec2::new(fx!(0.6), fx!(0.9))).bullet();
-            // User data of a body is state: here, the tick at which the shell is removed.
+            // The user data of a body is state. For a shell, it is the tick at which the shell is removed.
             let def = def.velocity((fx!(16), fx!(6))).user_data(self.world.tick() + SHELL_TIME);
             self.world.spawn(&named(def, "shell")?, &[shell])?;
             self.reload = RELOAD;

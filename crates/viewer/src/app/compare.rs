@@ -7,10 +7,10 @@ use lockstep2d::world::World;
 use super::player::slice_of;
 use crate::source::Source;
 
-/// Source that is compared with the shown one, at the same tick.
+/// A source that is compared with the shown source at the same tick.
 pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
-    /// Further copies of both sources, for the search; `None` when it has ended.
+    /// Further copies of both sources, which search for the first difference. `None` when the search has ended.
     scouts: Option<[Box<dyn Source>; 2]>,
     pub(super) first: Option<First>,
     searched: u64,
@@ -19,9 +19,9 @@ pub(super) struct Comparison {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct First {
     pub(super) tick: u64,
-    /// `None` if only other state differs.
+    /// First body that differs. `None` if only other state differs.
     pub(super) body: Option<BodyId>,
-    /// First differing field of `body`, or of the game's own state if no body differs.
+    /// First differing field of `body`. If no body differs, the first differing field of the game's own state.
     pub(super) field: String,
 }
 

@@ -9,13 +9,13 @@ use crate::event::Key;
 use crate::live::{Act, Aim, Form, Playground};
 use crate::source::Source;
 
-/// Largest distance from the pointer to a body that is grabbed or deleted, in pixels.
+/// Largest distance in pixels from the pointer to a body that it can grab or delete.
 const REACH: f32 = 6.0;
 
 /// Magnitude of gravity, in m/s².
 const GRAVITY: Fx = fx!(10);
 
-/// Directions of gravity, in the order of the key `g`; y points up.
+/// Directions of gravity, in the order in which the key `g` selects them. y points up.
 const GRAVITIES: [(Fx, Fx); 5] =
     [(fx!(0), fx!(-1)), (fx!(0), fx!(0)), (fx!(0), fx!(1)), (fx!(-1), fx!(0)), (fx!(1), fx!(0))];
 
@@ -45,7 +45,7 @@ impl Hand {
         playground.act(Act::DragTo(camera.point(at)));
     }
 
-    /// Starts drawing a new body.
+    /// Starts to draw a new body.
     pub(super) fn begin(&mut self, camera: &Camera, at: [f32; 2]) {
         self.begun = Some(camera.point(at));
     }
@@ -57,7 +57,7 @@ impl Hand {
         }
     }
 
-    /// Returns `false` if the key has no action here.
+    /// Handles a key. Returns `false` if the key has no action in a live world.
     pub(super) fn press(
         &mut self,
         key: Key,

@@ -5,7 +5,8 @@ use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 use crate::event::Key;
 
-/// Row of the help: keys as text, keys as values, effect. Left out if a player of the game uses one of the keys.
+/// Row of the help: the keys as text, the keys as values, and their effect. The row is left out if a player of the game
+/// uses one of the keys.
 type Line = (&'static str, &'static [Key], &'static str);
 
 const LINES: &[Line] = &[

@@ -9,7 +9,7 @@ use super::inspector::{Inspector, body_at};
 use super::layers;
 use super::timeline::Bar;
 
-/// Largest distance between press and release of a button that still counts as a click, in pixels.
+/// Largest distance in pixels that the pointer may move between press and release of a click.
 const CLICK: f32 = 4.0;
 
 #[derive(Debug, Default)]
@@ -23,12 +23,12 @@ pub(super) struct Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// The button went down at this position. Moving further than [`CLICK`] pans.
+    /// The button went down at this position. If the pointer moves further than [`CLICK`], it pans.
     Pressing([f32; 2]),
     Panning,
-    /// Moves along the timeline.
+    /// The pointer moves along the timeline.
     Scrubbing,
-    /// Drags a body from this position. A release within [`CLICK`] is also a click.
+    /// The pointer drags a body from this position. A release within [`CLICK`] is also a click.
     Dragging([f32; 2]),
     Spawning,
 }
@@ -52,7 +52,7 @@ impl App {
             Event::Up(_) => self.up(),
             Event::Wheel(notches) => self.turn(notches),
             Event::Dropped { name, bytes } => {
-                // Both functions show their errors as messages.
+                // Both functions show their errors as messages, so the results are not needed.
                 let _shown = match self.pointer.shift {
                     true => self.compare_with(&name, bytes),
                     false => self.show_file(&name, bytes),
@@ -89,7 +89,7 @@ impl App {
         }
     }
 
-    /// Returns `false` if the key has no action in a live world.
+    /// Handles a key in a live world. Returns `false` if it has no action there.
     fn act(&mut self, key: Key) -> bool {
         let App { source: Some(source), view, hand, pointer, size, .. } = self else { return false };
         let camera = view.camera(source.world(), *size);

@@ -18,12 +18,12 @@ const REACH: f32 = 6.0;
 pub(super) struct Inspector {
     pub(super) body: Option<BodyId>,
     pub(super) shows_state: bool,
-    /// Lines scrolled off the top.
+    /// Number of lines that are scrolled off the top.
     scrolled: usize,
 }
 
-/// Returns the body at a screen position, or else the closest one within [`REACH`], without sensors. If bodies overlap,
-/// the one in the last shape slot is taken, which is usually painted on top.
+/// Returns the body at a screen position. If there is none, returns the closest body within [`REACH`]. Sensors are
+/// ignored. If bodies overlap, the one with the shape in the last slot is taken, which is usually drawn on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {
@@ -48,7 +48,7 @@ impl Inspector {
         (self.shows_state, self.scrolled) = (!self.shows_state, 0);
     }
 
-    /// Upper left corner and size, in pixels; `None` if there is nothing to show.
+    /// Upper left corner and size of the panel, in pixels. `None` if there is nothing to show.
     pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
         let wide = width_of("x", 1.0) * COLUMNS as f32;
         let is_open = self.body.is_some() || self.shows_state;
@@ -101,7 +101,7 @@ pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
     };
     let mut lines = vec![(format!("body {}", world.body_label(id)), String::new())];
     add_fields(&mut lines, body);
-    // The fields only contain a scaled angular velocity: the speed at the radius of gyration.
+    // The fields contain the angular velocity only as a scaled value, the speed at the radius of gyration.
     let bits = body.angular_velocity().to_bits().into();
     lines.push(("angular_velocity".into(), Value::Fixed { bits, fraction_bits: Some(32) }.to_string()));
     for &shape in body.shapes() {

@@ -14,7 +14,7 @@ pub(crate) const fn layers_at_first() -> Layers {
     Layers { outlines: true, joints: true, ..Layers::NONE }
 }
 
-/// Toggles the layer of a key. Returns `false` if there is none.
+/// Toggles the layer of a key. Returns `false` if the key has no layer.
 pub(super) fn switch(layers: &mut Layers, key: Key) -> bool {
     let place = LAYER_KEYS.iter().position(|&of_layer| key == Key::Character(of_layer));
     let named = layers.named();

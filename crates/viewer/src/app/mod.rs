@@ -50,13 +50,13 @@ pub struct App {
     content: Content,
     source: Option<Box<dyn Source>>,
     comparison: Option<Comparison>,
-    /// Name and contents of the shown file, for a comparison.
+    /// Name and contents of the shown file. A comparison opens the file again.
     file: Option<(String, &'static [u8])>,
     message: Option<String>,
     player: Player,
     view: View,
     layers: Layers,
-    /// Layer list as last drawn, for hit tests.
+    /// The layer list as it was last drawn, to find the layer that is clicked.
     layer_list: Option<LayerList>,
     inspector: Inspector,
     hand: Hand,
@@ -169,9 +169,9 @@ impl App {
     /// Shows a file: a replay, a divergence report or a snapshot.
     ///
     /// # Errors
-    /// [`OpenError`], also shown as a message. The previous source then stays.
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
     pub fn show_file(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
-        // A source borrows its file for `'static`.
+        // A source borrows its file for `'static`, so the bytes are never freed.
         let bytes: &'static [u8] = bytes.leak();
         let source = self.noted(name, self.content.open(name, bytes))?;
         self.show(source);
@@ -179,18 +179,19 @@ impl App {
         Ok(())
     }
 
-    /// Shows a second file over the current one and searches for their first difference. Without a current file, the
-    /// file is shown alone.
+    /// Shows a second file over the current one, and searches for the first difference between them. If no file is
+    /// shown, the second file is shown alone.
     ///
     /// # Errors
-    /// [`OpenError`], also shown as a message. The previous source then stays.
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
     pub fn compare_with(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
         let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
         let bytes: &'static [u8] = bytes.leak();
         let other = self.noted(name, self.content.open(name, bytes))?;
         let mut scouts = [self.content.open(&first, first_bytes)?, self.content.open(name, bytes)?];
         self.message = None;
-        // A snapshot may start at a later tick than a replay.
+        // The search starts at the first tick that both sources have. A snapshot may start at a later tick than a
+        // replay.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
         for scout in &mut scouts {
             if let Err(error) = scout.seek(start) {
@@ -255,8 +256,8 @@ impl App {
             tick: source.tick(),
             ticks: source.ticks(),
             hash: Some(source.hash()),
-            // A message replaces the remarks: beside an error about another file, the verdict would seem to refer to
-            // it.
+            // A message replaces the remarks. If it is an error about another file, a verdict beside it would seem to
+            // refer to that file.
             status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
         }
     }
@@ -278,7 +279,7 @@ impl App {
         all.into_iter().flatten().filter(|remark| !remark.is_empty()).collect()
     }
 
-    /// Shows an error as a message about `name`.
+    /// Shows the error of a result as a message about `name`. Returns the result.
     fn noted<T>(&mut self, name: &str, result: Result<T, OpenError>) -> Result<T, OpenError> {
         result.inspect_err(|error| self.message = Some(format!("{name}: {error}")))
     }
@@ -291,7 +292,7 @@ impl App {
         }
     }
 
-    /// Shows the scene `by` places further in the list, cyclically.
+    /// Shows the scene that is `by` places further in the list. After the last scene comes the first.
     fn show_neighbour(&mut self, by: usize) {
         let name = self.source.as_ref().map_or("", |source| source.name());
         let scenes = &self.content.scenes;

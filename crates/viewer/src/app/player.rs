@@ -6,10 +6,10 @@ use lockstep2d::world::World;
 
 use crate::source::{Source, SourceError};
 
-/// Exponents of two of the slowest and the fastest playback speed.
+/// Range of the playback speed. A speed is given as an exponent of two.
 const SPEEDS: std::ops::RangeInclusive<i32> = -5..=5;
 
-/// Budget of a frame, in the unit of [`slice_of`].
+/// Cost of the ticks that a frame may play, in the unit of [`slice_of`].
 const SLICE: u64 = 60_000;
 
 #[derive(Debug)]
@@ -17,9 +17,9 @@ pub(super) struct Player {
     pub(super) playing: bool,
     /// Playback speed as an exponent of two.
     speed: i32,
-    /// Ticks that are due, with the fraction from earlier frames.
+    /// Number of ticks that are due, including the fraction of a tick from earlier frames.
     due: f64,
-    /// Tick to seek to, over several frames if it is far.
+    /// Tick to seek to. If it is far, seeking takes several frames.
     goal: Option<u64>,
 }
 
@@ -30,7 +30,7 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Toggles between playing and paused. Seeks to `from` if given.
+    /// Toggles between playing and paused. If `from` is given, seeks to it.
     pub(super) fn toggle(&mut self, from: Option<u64>) {
         self.playing = !self.playing;
         self.goal = from;
@@ -52,7 +52,8 @@ impl Player {
         (self.playing, self.goal) = (false, Some(tick));
     }
 
-    /// Pauses, and seeks relative to the current goal or tick, within the source.
+    /// Pauses, and seeks by a number of ticks from the current goal or, without a goal, from the current tick. The
+    /// result is clamped to the ticks of the source.
     pub(super) fn go_by(&mut self, ticks: i64, source: &dyn Source) {
         let from = self.goal.unwrap_or(source.tick());
         let end = source.ticks().unwrap_or(u64::MAX);
@@ -83,7 +84,7 @@ impl Player {
         } else if self.playing {
             self.due += time.as_secs_f64() * f64::from(source.tick_rate()) * f64::from(self.speed).exp2();
             let due = (self.due as u64).min(slice);
-            // Ticks beyond the budget are dropped, so that playback slows down instead of catching up.
+            // Ticks beyond this number are dropped. Playback then slows down instead of catching up later.
             self.due = self.due.fract();
             let end = source.ticks().unwrap_or(u64::MAX);
             source.seek(source.tick().saturating_add(due).min(end))?;
@@ -93,7 +94,8 @@ impl Player {
     }
 }
 
-/// Largest number of ticks to play in a frame, at least 1. A tick costs 100 plus 1 per body plus 2 per pair.
+/// Largest number of ticks to play in a frame, at least 1. A tick costs 100, plus 1 for each body, plus 2 for each
+/// pair.
 pub(super) fn slice_of(world: &World) -> u64 {
     SLICE / (100 + world.body_count() as u64 + 2 * world.pair_count() as u64).min(SLICE)
 }

@@ -15,7 +15,7 @@ const TOP: f32 = 8.0;
 /// Longest row of text, in characters.
 const COLUMNS_MAX: usize = 120;
 
-/// Top of the layer list, in pixels, unless the text above it ends lower.
+/// Top of the layer list, in pixels. The list is lower if the text above it ends lower.
 const LAYERS_TOP: f32 = 136.0;
 
 pub(super) fn draw(app: &mut App) {
@@ -60,7 +60,7 @@ pub(super) fn draw(app: &mut App) {
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
     let players = source.as_ref().map_or(Vec::new(), |source| source.keys());
-    // The list is omitted in a small window, and while people play, because it would cover their game.
+    // The list is left out in a small window, and while people play, because it would cover their game.
     let fits = source.is_some() && layer_list.corner[1] + LayerList::size()[1] < size[1] - CELL_HEIGHT * 3.0;
     let is_in_the_way = player.playing && !players.is_empty() && !*help;
     app.layer_list = (fits && !is_in_the_way).then_some(layer_list);
@@ -73,7 +73,7 @@ pub(super) fn draw(app: &mut App) {
     }
 }
 
-/// A verdict is recognised by its text.
+/// Colour of a status. A verdict is recognised by its text.
 fn colour_of(status: &str) -> Colour {
     let bad = ["diverged", "malformed", "incomplete", "claim mismatch", "limit exceeded", "unverifiable"];
     match status {
@@ -83,7 +83,7 @@ fn colour_of(status: &str) -> Colour {
     }
 }
 
-/// Returns the y coordinate of the lower edge.
+/// Draws lines of text. Returns the y coordinate of their lower edge.
 fn draw_lines(list: &mut DrawList, lines: &[(Colour, String)], [width, _]: [f32; 2]) -> f32 {
     let columns = (((width - 2.0 * LEFT) / width_of("x", 1.0)) as usize).clamp(1, COLUMNS_MAX);
     let rows: Vec<_> = lines
@@ -104,7 +104,8 @@ fn wrapped(line: &str, columns: usize) -> Vec<String> {
     characters.chunks(columns.max(1)).map(|row| row.iter().collect()).collect()
 }
 
-/// Draws the second world over the first, and circles the bodies that differ, the first with a thicker line.
+/// Draws the second world over the first. Circles the bodies that differ. The circle of the first such body has a
+/// thicker line.
 fn draw_other(
     list: &mut DrawList,
     shown: &World,

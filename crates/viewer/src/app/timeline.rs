@@ -27,7 +27,7 @@ impl Bar {
     }
 
     pub(super) fn holds(self, [x, y]: [f32; 2]) -> bool {
-        // Clicks slightly beside the thin bar count, too.
+        // The bar is thin, so clicks slightly beside it count, too.
         (self.left - 4.0..=self.left + self.width + 4.0).contains(&x)
             && (self.top - 6.0..=self.top + HEIGHT + MARGIN).contains(&y)
     }

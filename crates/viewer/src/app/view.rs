@@ -18,7 +18,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the camera, which at first shows the whole world.
+    /// Returns the camera. At first it shows the whole world.
     pub(super) fn camera(&mut self, world: &World, size: [f32; 2]) -> Camera {
         if self.size != size {
             self.resize(size);
@@ -44,7 +44,7 @@ impl View {
         self.camera.iter_mut().for_each(|camera| camera.zoom(ZOOM.powf(notches), about));
     }
 
-    /// Keeps the centre and the scale.
+    /// Adopts a new size of the window. Keeps the centre and the scale.
     fn resize(&mut self, size: [f32; 2]) {
         self.size = size;
         let fresh = Camera::new(Aabb::default(), [0.0; 2], size);

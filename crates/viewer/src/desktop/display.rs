@@ -1,12 +1,12 @@
-//! Checks for a display, without which the windowing library aborts the program.
+//! Checks that there is a display. Without one, the windowing library aborts the program.
 
 use std::env;
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixStream};
 use std::path::PathBuf;
 
-/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. With `DISPLAY` alone, a local X server must accept connections.
-/// The error is a message for the user.
+/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. If only `DISPLAY` is set and names a local X server, that server
+/// must accept connections. The error is a message for the user.
 pub(super) fn check() -> Result<(), String> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     match (set("DISPLAY"), set("WAYLAND_DISPLAY")) {
@@ -20,7 +20,7 @@ pub(super) fn check() -> Result<(), String> {
     }
 }
 
-/// Whether an X server listens at `display`. Displays on other hosts are not contacted.
+/// Whether an X server listens at `display`. Displays on other hosts are not contacted, and count as listening.
 fn answers(display: &str) -> bool {
     let Some(number) = display.strip_prefix(':').or_else(|| display.strip_prefix("unix:")) else {
         return !display.starts_with('/') && display.contains(':');

@@ -35,7 +35,7 @@ pub(super) struct OnlineArgs {
     rollback: bool,
 }
 
-/// Hides the arguments in the help of a program without network matches.
+/// Hides the arguments for network matches in the help of a program that has none.
 pub(super) fn without(command: clap::Command) -> clap::Command {
     IDS.iter().fold(command, |command, id| command.mut_arg(id, |argument| argument.hide(true)))
 }
@@ -53,7 +53,7 @@ impl OnlineArgs {
         host.or(join).or_else(|| self.watch.clone().map(Entry::Watch))
     }
 
-    /// Enters a match of a scene, by default the first with a setup.
+    /// Enters a match of the named scene. Without a name, of the first scene with a setup.
     pub(super) fn open<G: Game + 'static>(
         &self,
         viewer: &Viewer<G>,
@@ -118,7 +118,7 @@ impl OnlineArgs {
     }
 }
 
-/// Socket at a free port, and the resolved address.
+/// Binds a socket to a free port. Returns it with the resolved address of `contact`.
 fn towards(contact: &str) -> Result<(Udp, SocketAddr), Trouble> {
     let contact = resolve(contact)?;
     let udp = bind(if contact.is_ipv6() { "[::]:0" } else { "0.0.0.0:0" })?;

@@ -20,7 +20,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// All forms, in the order of the key `b`.
+    /// All forms, in the order in which the key `b` selects them.
     pub const ALL: [Form; 4] = [Form::Circle, Form::Box, Form::Polygon, Form::Capsule];
 
     /// Name for display.
@@ -40,7 +40,7 @@ impl Form {
 pub struct Aim {
     /// The point, in metres.
     pub at: Vec2<Fx>,
-    /// Largest distance of a picked body that does not contain the point, in metres.
+    /// Largest distance in metres from the point to a body that is picked. Used if no body contains the point.
     pub within: Fx,
 }
 
@@ -54,7 +54,8 @@ impl Aim {
 
 /// User action in a live world. Points are in metres, in world coordinates.
 ///
-/// Acts take effect in the next tick, in order. An act that makes no sense or that the world refuses has no effect.
+/// Acts take effect in the next tick, in the order of the calls. An act that finds no body or that the world refuses
+/// has no effect.
 ///
 /// ```
 /// use lockstep2d::{body::BodyKind, fx, math::Vec2};
@@ -83,25 +84,25 @@ impl Aim {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// Grabs the dynamic body at this point. Releases the held body first.
+    /// Grabs the dynamic body at this point. If another body is held, it is released first.
     Grab(Aim),
-    /// Pulls the held body towards this point, by its grabbed point.
+    /// Pulls the held body by its grabbed point towards this point.
     DragTo(Vec2<Fx>),
     /// Releases the held body, which keeps its velocity.
     Release,
-    /// Adds a dynamic body. The drag gives the radius of a circle or polygon, the half extents of a box, or the segment
-    /// of a capsule, up to 50 m. A drag shorter than 0.05 m gives a size of 0.5 m.
+    /// Adds a dynamic body. The way from `at` to `to` gives the radius of a circle or polygon, the half extents of a
+    /// box, or the segment of a capsule, up to 50 m. If the way is shorter than 0.05 m, the size is 0.5 m.
     Spawn {
         /// Form of the body.
         form: Form,
-        /// Centre of the body, or start of the segment of a drawn capsule.
+        /// Centre of the body. For a capsule, one end of its segment.
         at: Vec2<Fx>,
         /// End of the drag.
         to: Vec2<Fx>,
     },
-    /// Removes the body at this point, whatever its kind.
+    /// Removes the body at this point, of any kind.
     Delete(Aim),
-    /// Sets gravity, in m/s².
+    /// Sets gravity to this acceleration, in m/s².
     Gravity(Vec2<Fx>),
     /// Sets off an explosion, for example [`Act::explode`].
     Explode(Explosion),
@@ -126,15 +127,15 @@ pub struct Held {
     pub towards: Vec2<Fx>,
 }
 
-/// World that the user can act in.
+/// A world in which the user can act.
 pub trait Playground {
     /// Queues an act for the next tick.
     ///
-    /// After a seek to an earlier tick, an act that issues commands drops the recorded ticks from there on. Such a seek
-    /// itself drops queued acts and releases the held body.
+    /// If the source has sought to an earlier tick, an act that issues commands drops the later recorded ticks. The
+    /// seek itself drops queued acts and releases the held body.
     fn act(&mut self, act: Act);
 
-    /// Returns the held body; `None` until the second tick after the grab.
+    /// Returns the held body. After a grab it returns `None` until two ticks have been played.
     fn held(&self) -> Option<Held>;
 
     /// Number of queued acts.

@@ -1,10 +1,11 @@
 //! [`Hand`]: turns user actions into commands.
 //!
-//! A spring joint connects a dragged body to an anchor: a kinematic body without shapes that follows the pointer, like
-//! Box2D's mouse joint. A command returns no handle, so the anchor is found by its user data one tick later, and the
-//! joint is added then.
+//! A dragged body is connected by a spring joint to an anchor, like Box2D's mouse joint. The anchor is a kinematic body
+//! without shapes that follows the pointer. A command returns no handle. So the anchor is found by its user data one
+//! tick later, and the joint is added then.
 //!
-//! A seek to an earlier tick forgets the held body. The next live tick removes the anchors left in the world.
+//! A seek to an earlier tick forgets the held body. Anchors may then be left in the world. The next live tick removes
+//! them.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;
@@ -24,8 +25,8 @@ const HERTZ: Fx = fx!(5);
 const DAMPING_RATIO: Fx = fx!(1);
 /// Largest force of the drag spring per kilogram of the body, in m/s².
 const STRENGTH: i64 = 1000;
-/// Friction torque against rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s²: a quarter
-/// of its weight at that radius.
+/// Friction torque against the rotation of a dragged body, per kilogram of mass and metre of radius of gyration, in
+/// m/s². The torque is that of a quarter of the body's weight at this radius.
 const GRIP: Fx = fx!(2.5);
 
 #[derive(Debug)]
@@ -72,7 +73,7 @@ impl Hand {
         }
     }
 
-    /// Forgets the held body without a command, after a seek backwards or after commands were dropped.
+    /// Forgets the held body without issuing a command. Called after a seek backwards and after commands were dropped.
     pub(super) fn forget(&mut self) {
         self.hold = Hold::Nothing;
         self.litter = true;
@@ -100,16 +101,16 @@ impl Hand {
         }
     }
 
-    /// Continues earlier grabs. To be called in every live tick, before its acts.
+    /// Continues earlier grabs. Must be called in every live tick, before its acts.
     pub(super) fn follow(&mut self, world: &World, commands: &mut Vec<Command>) {
         match self.hold {
             Hold::Nothing => {}
             Hold::Reaching(grab) => match find_anchor(world, grab.mark) {
                 Some(anchor) => self.join(grab, anchor, world, commands),
-                // The world had no room for the anchor.
+                // The world had no room for the anchor, so the grab ends.
                 None => self.hold = Hold::Nothing,
             },
-            // The joint disappears with its body, for example.
+            // The joint is gone, for example because its body was removed.
             Hold::Holding(grab, anchor) => {
                 if !world.joints().any(|(_, joint)| joint.def().user_data == grab.mark) {
                     self.drop_anchor(anchor, commands);
@@ -126,13 +127,13 @@ impl Hand {
         }
     }
 
-    /// Moves the anchor towards the pointer. To be called in every live tick, after its acts.
+    /// Moves the anchor towards the pointer. Must be called in every live tick, after its acts.
     pub(super) fn pull(&self, world: &World, commands: &mut Vec<Command>) {
         let Hold::Holding(grab, id) = self.hold else { return };
         let Some(anchor) = world.body(id) else { return };
         let config = world.config();
         let way = grab.towards - anchor.position();
-        // Half the distance that a kinematic body can move in a tick leaves room for rounding.
+        // Limits the movement to half of what a kinematic body can move in a tick. This leaves room for rounding.
         let reach = config.solver.speed_max / (2 * i64::from(config.tick_rate));
         let way = match way.normalized_with_length() {
             Some((direction, length)) if length > reach => direction.widen().scale(reach),
@@ -169,7 +170,7 @@ impl Hand {
     fn release(&mut self, commands: &mut Vec<Command>) {
         match std::mem::replace(&mut self.hold, Hold::Nothing) {
             Hold::Nothing => {}
-            // The handle of the anchor is not known yet.
+            // The handle of the anchor is not known yet, so `follow` removes the anchor in the next live tick.
             Hold::Reaching(_) => self.litter = true,
             // Removing the anchor removes its joint and wakes the body.
             Hold::Holding(_, anchor) => commands.push(Command::Despawn { body: anchor }),
@@ -186,7 +187,7 @@ fn find_anchor(world: &World, mark: u64) -> Option<BodyId> {
     world.bodies().find(|(_, body)| body.user_data() == mark && is_anchor(body)).map(|(id, _)| id)
 }
 
-/// Whether a body is an anchor, of this hand or of an earlier one.
+/// Whether a body is an anchor, made by this hand or by an earlier one.
 fn is_anchor(body: &Body) -> bool {
     body.kind() == BodyKind::Kinematic && body.shapes().is_empty() && body.user_data() >> 32 == MARK >> 32
 }

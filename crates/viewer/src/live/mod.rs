@@ -17,11 +17,11 @@ use crate::recording::{Recording, RecordingError};
 use crate::source::{Source, SourceError};
 use hand::Hand;
 
-/// Sandbox that the user acts in, and its recording.
+/// A sandbox in which the user acts, and its recording.
 ///
 /// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
-/// recorded ticks again. An [`Act`] that issues commands there drops them. If the work of the replay exceeds the
-/// default limit of a verifier, the status shows it as a value for `--max-work`.
+/// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. The work of the
+/// replay may exceed the default limit of a verifier. The status then shows the work, as a value for `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;
@@ -49,7 +49,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts a scene, whose scripted commands run in every tick.
+    /// Starts a scene. Its scripted commands run in every tick.
     ///
     /// # Errors
     /// [`RecordError`] if a replay cannot hold the scene.
@@ -80,7 +80,7 @@ impl Live {
         self.recording.game()
     }
 
-    /// Plays the recorded tick if there is one and the acts issue no commands, otherwise a live tick.
+    /// Plays the recorded tick if there is one and the acts issue no commands. Otherwise plays a live tick.
     fn step(&mut self) -> Result<(), RecordingError> {
         let world = self.recording.game().world();
         let goes_on = self.recording.is_at_end();
@@ -104,7 +104,7 @@ impl Live {
         let all = [[script.clone(), done].concat()];
         self.note = None;
         match self.recording.play(&all) {
-            // A replay cannot hold all commands: the user's are dropped.
+            // The commands do not fit in a replay. The user's commands are dropped.
             Err(RecordingError::TooMuch | RecordingError::Record(_)) if all[0].len() > script.len() => {
                 self.hand.forget();
                 self.note = Some("too many commands in one tick: they were dropped");
@@ -121,7 +121,7 @@ impl Live {
 
 impl Playground for Live {
     fn act(&mut self, act: Act) {
-        // The last of consecutive drag targets replaces the others.
+        // If several drag targets follow each other, only the last counts.
         if let (Act::DragTo(_), Some(Act::DragTo(_))) = (act, self.acts.last()) {
             self.acts.pop();
         }

@@ -9,12 +9,13 @@ use super::act::Aim;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Picked {
     pub(super) body: BodyId,
-    /// Point of the body in world coordinates, in metres.
+    /// Picked point, in world coordinates, in metres.
     pub(super) point: Vec2<Fx>,
 }
 
-/// Picks the `wanted` body that contains the point, with its shape in the last slot, or else the nearest one within
-/// `aim.within`. Solid shapes take precedence over sensors.
+/// Picks a body among those for which `wanted` is true. If several bodies contain the point, the one with the shape in
+/// the last slot is picked. If none contains it, the nearest body within `aim.within` is picked. Solid shapes take
+/// precedence over sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };

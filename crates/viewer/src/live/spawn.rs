@@ -7,11 +7,12 @@ use lockstep2d::world::Command;
 
 use super::act::Form;
 
-/// Size of a body placed by a click, in metres: radius, half width or length of a capsule's segment.
+/// Size in metres of a body that is placed by a click: the radius, the half side of a box, or the length of a capsule's
+/// segment.
 const SIZE: Fx = fx!(0.5);
 /// Drags shorter than this, in metres, count as clicks.
 const CLICK: Fx = fx!(0.05);
-/// Smallest half side of a box, and smallest radius and half length of a capsule, in metres.
+/// Smallest half side of a box, in metres. Also the smallest radius and half length of a capsule.
 const HALF_MIN: Fx = fx!(0.02);
 /// Largest size, in metres.
 const SIZE_MAX: Fx = fx!(50);
@@ -41,7 +42,7 @@ fn rectangle(corner: Option<Vec2<Fx>>) -> Result<Geometry, GeometryError> {
     Polygon::rectangle(width, height).map(Geometry::from)
 }
 
-/// Convex hull of three to eight random points at 0.6 to 1 times the radius from the centre.
+/// Convex hull of three to eight random points. Their distances from the centre are 0.6 to 1 times the radius.
 fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
     let corners = 3 + rng.below(6);
     let points: Vec<_> = (0..corners)
@@ -52,11 +53,11 @@ fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
             Rot::from_angle(Angle::from_turns(part)).apply_wide(Vec2::new(distance, Fx::ZERO))
         })
         .collect();
-    // Points without a valid hull are replaced by a regular polygon.
+    // If the points have no valid hull, a regular polygon replaces it.
     Polygon::hull(&points).or_else(|_| Polygon::regular(corners, radius))
 }
 
-/// Capsule along the drag. Its radius is a fifth of the drag, and at least [`HALF_MIN`].
+/// Capsule along the drag. Its radius is a fifth of the length of the drag, and at least [`HALF_MIN`].
 fn capsule(at: Vec2<Fx>, way: Option<Vec2<Fx>>, length: Fx) -> (BodyDef, Result<Geometry, GeometryError>) {
     let half = (length / 2).max(HALF_MIN);
     let radius = (length / 5).max(HALF_MIN);

@@ -2,13 +2,13 @@
 
 use lockstep2d_render::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 
-/// Size of a slot: a glyph with an empty pixel on its right and below, so that magnified neighbours do not bleed into
-/// it.
+/// Size of the place of a glyph in the atlas. On its right and below, a glyph has an empty pixel, so that magnified
+/// glyphs do not show pixels of their neighbours.
 const SLOT: [usize; 2] = [GLYPH_WIDTH + 1, GLYPH_HEIGHT + 1];
 const COLUMNS: usize = 16;
-/// Number of Latin-1 characters, which have the first slots.
+/// Number of Latin-1 characters. They have the first slots.
 const LATIN: usize = 0x100;
-/// First of the 64 characters that follow: dashes, quotes and spaces.
+/// First of the 64 characters that follow in the atlas: dashes, quotes and spaces.
 const PUNCTUATION: u32 = 0x2000;
 const SLOTS: usize = LATIN + 0x40;
 
@@ -53,7 +53,7 @@ fn corner(slot: usize) -> [usize; 2] {
     [slot % COLUMNS * SLOT[0], slot / COLUMNS * SLOT[1]]
 }
 
-/// Slot of a character; slot 0 is the glyph for missing characters.
+/// Slot of a character. Slot 0 is the glyph for characters that the atlas lacks.
 fn slot(character: char) -> usize {
     let code = u32::from(character);
     match character {

@@ -7,9 +7,9 @@ use super::{Atlas, Chunk, Mesh, Screen, Vertex};
 
 type Point = [f32; 2];
 
-/// Sample for full coverage: distance 0, reach 1.
+/// Value of [`Vertex::sample`] for full coverage: distance 0, reach 1.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
-/// Maximum number of points of a strip. Each becomes at most four vertices.
+/// Maximum number of points of a strip. Each point becomes at most four vertices.
 const RUN: usize = Chunk::VERTICES / 4 - 2;
 
 impl Mesh {
@@ -35,7 +35,7 @@ impl Mesh {
         let bordered = !item.stroke.is_none() && item.width > 0.0;
         if item.closed && !item.fill.is_none() && points.len() > 2 {
             if bordered && item.width >= screen.pixel {
-                // The border covers the edge of the area and is antialiased on both sides.
+                // The border covers the edge of the area. The border itself is antialiased on both sides.
                 self.area(points, item.fill);
             } else {
                 match regular(points) {
@@ -62,7 +62,8 @@ impl Mesh {
         chunk.indices.extend(fan.flatten().map(|index| first + index));
     }
 
-    /// Adds a regular polygon as a fan around its centre. The sampled depth grows linearly from the edge to the centre.
+    /// Adds a regular polygon as a fan around its centre. The reach in the samples grows linearly from the edge to the
+    /// centre.
     fn disc(&mut self, points: &[Point], disc: Disc, fill: Colour, pixel: f32) {
         let [x, y] = disc.middle;
         let scale = 1.0 + pixel / 2.0 / disc.inner;
@@ -74,7 +75,7 @@ impl Mesh {
             let position = [x + (point[0] - x) * scale, y + (point[1] - y) * scale];
             Vertex { position, sample: [0.0; 3], colour }
         }));
-        // A disc has at most 64 corners.
+        // The cast is exact, because a disc has at most 64 corners.
         let count = points.len() as u16;
         let mut last = middle + count;
         for next in middle + 1..=middle + count {
@@ -89,7 +90,7 @@ impl Mesh {
             return;
         }
         let corners = std::mem::take(&mut self.strip.corners);
-        // The left side of a clockwise outline is outside, in coordinates where y points down.
+        // Where y points down, the left side of a clockwise outline is outside.
         let half = if turns_left(points) { -pixel / 2.0 } else { pixel / 2.0 };
         let (chunk, first) = self.room(2 * corners.len());
         let colour = bytes(fill);
@@ -105,7 +106,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds a single segment, the most common kind of line, without the detour over a strip.
+    /// Adds a single segment without building a strip. It is the most common kind of line.
     fn segment(&mut self, [a, b]: [Point; 2], item: &Item, pixel: f32) {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = (x * x + y * y).sqrt();
@@ -144,7 +145,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds a line with more than [`RUN`] points in pieces.
+    /// Adds a line with more than [`RUN`] points, in pieces.
     fn long_stroke(&mut self, points: &[Point], item: &Item, pixel: f32) {
         let mut from = 0;
         while from + 1 < points.len() {
@@ -187,7 +188,7 @@ impl Mesh {
     }
 }
 
-/// Colour of a line, and half its width plus half a pixel, in screen pixels.
+/// Colour of a line, and its reach: half its width plus half a pixel, in screen pixels.
 fn pen(item: &Item, pixel: f32) -> ([u8; 4], f32) {
     // A line thinner than a pixel is drawn one pixel wide, with its opacity reduced.
     let width = item.width / pixel;
@@ -199,11 +200,11 @@ fn pen(item: &Item, pixel: f32) -> ([u8; 4], f32) {
 /// Regular polygon: a mark or a circle.
 struct Disc {
     middle: Point,
-    /// Distance of the edges from the centre.
+    /// Distance from the centre to the edges.
     inner: f32,
 }
 
-/// Recognises a regular polygon of 5 to 64 corners, to about a hundredth of the edge length.
+/// Recognises a regular polygon of 5 to 64 corners. The tolerance is about a hundredth of the edge length.
 fn regular(points: &[Point]) -> Option<Disc> {
     if !(5..=64).contains(&points.len()) {
         return None;
@@ -226,7 +227,7 @@ fn regular(points: &[Point]) -> Option<Disc> {
     (inner > 0.0).then_some(Disc { middle, inner })
 }
 
-/// Whether a shape overlaps the screen; `false` if a coordinate is not finite.
+/// Whether a shape may overlap the screen. `false` if a coordinate is not finite.
 fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     // A mitre extends at most 2.2 half-widths of the line.
     let margin = 1.1 * width + 2.0 * screen.pixel;
@@ -243,16 +244,16 @@ fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     seen == [[true; 2]; 2]
 }
 
-/// Triangle fan of a convex polygon; `None` if it is empty or does not fit in a chunk.
+/// Triangle fan of a convex polygon. `None` if the polygon is empty or does not fit in a chunk.
 fn fan(corners: usize) -> Option<impl Iterator<Item = [u16; 3]>> {
     let last =
         u16::try_from(corners.checked_sub(1)?).ok().filter(|&last| usize::from(last) < Chunk::VERTICES)?;
     Some((1..last).map(|corner| [0, corner, corner + 1]))
 }
 
-/// Appends the triangles of a strip, whose corners alternate between its sides.
+/// Appends the triangles of a strip. Its corners alternate between the two sides of the strip.
 fn ribbon(indices: &mut Vec<u16>, first: u16, pairs: usize, closed: bool) {
-    // The corners fit in a chunk.
+    // The cast is exact, because the corners fit in a chunk.
     let pairs = pairs as u16;
     let mut quad = |a: u16, b: u16| {
         let [a, b] = [first + 2 * a, first + 2 * b];

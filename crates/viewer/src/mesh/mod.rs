@@ -7,8 +7,8 @@
 //! coverage = clamp(reach - |distance|, 0, 1)
 //! ```
 //!
-//! where, for a line, `distance` is the distance from the centre line in screen pixels, and `reach` is half the line
-//! width plus half a pixel. This antialiases edges over one pixel. For text, it is the opacity of the [`Atlas`].
+//! For a line, `distance` is the distance from the centre line in screen pixels, and `reach` is half the line width
+//! plus half a pixel. This antialiases edges over one pixel. For text, the coverage is the opacity of the [`Atlas`].
 //!
 //! ```
 //! use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
@@ -61,11 +61,11 @@ pub struct Chunk {
 impl Chunk {
     /// Maximum number of vertices of a chunk.
     pub const VERTICES: usize = 1 << 15;
-    /// Maximum number of indices of a chunk: an area without a border has most per vertex, fewer than 4.5.
+    /// Maximum number of indices of a chunk. An area without a border has the most indices per vertex: fewer than 4.5.
     pub const INDICES: usize = 5 * Chunk::VERTICES;
 }
 
-/// The screen that a mesh is for.
+/// The screen on which a mesh is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
     /// Width and height, in the units of the draw list.
@@ -98,7 +98,8 @@ impl Mesh {
         self.used = 0;
     }
 
-    /// Returns a chunk with room for `vertices` (at most [`Chunk::VERTICES`]), and its number of vertices.
+    /// Returns a chunk with room for `vertices` more vertices (at most [`Chunk::VERTICES`]), and its current number of
+    /// vertices.
     fn room(&mut self, vertices: usize) -> (&mut Chunk, u16) {
         let full = |chunk: &Chunk| chunk.vertices.len() + vertices > Chunk::VERTICES;
         if self.used == 0 || full(&self.chunks[self.used - 1]) {
@@ -108,7 +109,7 @@ impl Mesh {
             self.used += 1;
         }
         let chunk = &mut self.chunks[self.used - 1];
-        // The number is at most 2^15, the capacity of a chunk.
+        // The cast is exact: the number is at most 2^15, the capacity of a chunk.
         let first = chunk.vertices.len() as u16;
         (chunk, first)
     }

@@ -2,17 +2,17 @@
 
 type Point = [f32; 2];
 
-/// Mitre limit, as 1 + the cosine of the turning angle. At the limit (127 degrees) a mitre extends 2.2 half-widths;
-/// sharper corners get none.
+/// Mitre limit, as 1 + the cosine of the turning angle. At the limit (127 degrees) a mitre extends 2.2 half-widths.
+/// Sharper corners have no mitre.
 const SHARP: f32 = 0.4;
 
-/// Segments up to this length, in units of the draw list, are skipped: they have no reliable direction.
+/// Segments up to this length, in units of the draw list, are skipped, because their direction is not reliable.
 pub(super) const SHORTEST: f32 = 1e-3;
 
-/// Corners of a line, each with the mitre offset to its left side for a half-width of 1.
+/// Corners of a line. Each has the offset of the mitre to its left side, for a half-width of 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Strip {
-    /// Points of the line, without those closer than [`SHORTEST`] to their predecessor.
+    /// Points of the line. A point closer than [`SHORTEST`] to its predecessor is left out.
     points: Vec<Point>,
     /// Left unit normal of the segment that starts at each point.
     normals: Vec<Point>,
@@ -32,7 +32,7 @@ impl Strip {
         let Some(&first) = self.points.first() else { return false };
         if closed {
             self.add(first);
-            // The duplicate of the first point is removed.
+            // The first point was added again for its normal. It is already in the list.
             if self.points.len() > 1 {
                 self.points.pop();
             }

@@ -19,7 +19,7 @@ fn mesh_of(list: &DrawList, screen: &Screen) -> Mesh {
     mesh
 }
 
-/// Brightness of each pixel of a list in white on black, by the formula of the shader.
+/// Brightness of each pixel when a list is drawn in white on black, computed by the formula of the shader.
 fn drawn(list: &DrawList) -> Vec<f32> {
     let mesh = mesh_of(list, &SCREEN);
     let atlas = Atlas::default();
@@ -44,7 +44,7 @@ fn sample(corners: [&Vertex; 3], point: [f32; 2]) -> Option<[f32; 3]> {
     let cross =
         |a: [f32; 2], b: [f32; 2], c: [f32; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let area = cross(a, b, c);
-    // Slightly off the pixel centre: a point on a shared edge would count for two triangles.
+    // The point is slightly off the pixel centre. A point on a shared edge would count for two triangles.
     let point = [point[0] + 1.3e-3, point[1] + 2.7e-3];
     let weights = [cross(point, b, c), cross(a, point, c), cross(a, b, point)].map(|part| part / area);
     let inside = area != 0.0 && weights.iter().all(|&weight| weight >= 0.0);
@@ -117,7 +117,7 @@ fn a_thin_line_is_faint() {
 fn an_area_with_a_border_and_one_without() {
     let mut list = DrawList::default();
     list.polygon(BOX, WHITE, Colour::NONE, 0.0);
-    // The antialiased edge cuts off corners by a fraction of a pixel.
+    // At corners, the antialiased edge misses a fraction of a pixel.
     assert_covers(&list, 0.3, |point| (depth(point) + 0.5).clamp(0.0, 1.0));
     let backwards = BOX.into_iter().rev();
     let mut other = DrawList::default();
@@ -128,7 +128,7 @@ fn an_area_with_a_border_and_one_without() {
 
     list.clear();
     list.polygon(BOX, WHITE, WHITE, 3.0);
-    // At the corners, mitres extend further than half the border width of 1.5 pixels.
+    // The border is 1.5 pixels wide on each side. At the corners, mitres extend further.
     let near_corner =
         |point| BOX.iter().any(|&corner| distance(point, corner, [corner[0] + 0.1, corner[1]]).0 < 4.0);
     for (at, pixel) in drawn(&list).into_iter().enumerate() {
@@ -151,7 +151,7 @@ fn discs_are_round_whatever_their_size() {
         let middle = [31.3, 30.8];
         let mut list = DrawList::default();
         list.polygon(disc(middle, radius, corners), WHITE, Colour::NONE, 0.0);
-        // The edges of the polygon are closer to the centre than its corners.
+        // The tolerance is larger, because the edges of the polygon are closer to the centre than its corners.
         let tolerance = 0.02 + radius * (1.0 - (std::f32::consts::PI / corners as f32).cos());
         assert_covers(&list, tolerance, |point| {
             let depth = radius - distance(point, middle, [middle[0] + 1e-3, middle[1]]).0;

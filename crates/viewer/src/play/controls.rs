@@ -7,7 +7,7 @@ use crate::event::{Event, Key};
 
 type Change<I> = Rc<dyn Fn(&mut I)>;
 
-/// Keys of a player, each with its change to the player's input for a tick.
+/// The keys of a player. Each key has a function that changes the player's input for a tick.
 ///
 /// The input of a tick starts as the default. Every key that is down changes it, in the order in which the keys were
 /// added. A key that goes down and up between two ticks counts for one tick.
@@ -104,7 +104,7 @@ impl<I: Default> Controls<I> {
         input
     }
 
-    /// Returns the input for the next tick, and forgets taps.
+    /// Returns the input for the next tick, and forgets the keys that went down since the last tick.
     pub(super) fn take(&mut self) -> I {
         let input = self.input();
         self.tapped.clear();

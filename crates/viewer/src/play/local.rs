@@ -12,7 +12,7 @@ use crate::event::{Event, Key};
 use crate::recording::{Recording, RecordingError};
 use crate::source::{Source, SourceError};
 
-/// Game of people at one keyboard and bots.
+/// A game played at one keyboard, by people and bots.
 ///
 /// Every tick is recorded and can be sought. Recorded ticks are played again until a person presses a player's key. The
 /// game then continues from there and drops the later recorded ticks.
@@ -25,14 +25,14 @@ pub struct LocalMatch<G: Game> {
     nothing: World,
 }
 
-/// Unshared bytes of a save, with a kilobyte for the game's own rules.
+/// Bytes of a save that it does not share with other saves. A kilobyte is added for the game's own rules.
 fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
     1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
 }
 
 impl<G: Game + 'static> LocalMatch<G> {
-    /// Starts a game. The players take its seats in order. Further seats are absent, and further players are left out.
-    /// Bots are created from `seed`.
+    /// Starts a game. The players take its seats in order. If there are fewer players than seats, the other seats are
+    /// absent. If there are more, the other players are left out. Bots are created from `seed`.
     ///
     /// # Errors
     /// [`RecordError`] if the game refuses the setup or a replay cannot hold it.
@@ -103,7 +103,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         self.recording.game().tick_rate()
     }
 
-    /// Seeking forwards plays; seeking backwards keeps the recording.
+    /// Seeking forwards plays, also beyond the recorded ticks. Seeking backwards keeps the recording.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
             return self.recording.seek(tick).map_err(SourceError::of);
@@ -119,7 +119,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
     }
 
     fn handle(&mut self, event: &Event) -> bool {
-        // No player may miss the release of a key.
+        // Every player handles the event, so that none misses the release of a key.
         let taken = self.players.iter_mut().map(|player| player.handle(event));
         taken.fold(false, |any, taken| any | taken)
     }

@@ -1,4 +1,4 @@
-//! Play of any game: people at one keyboard and bots ([`LocalMatch`]), or over a network ([`Online`]).
+//! Play of any game: by people and bots at one computer ([`LocalMatch`]), or over a network ([`Online`]).
 
 mod controls;
 mod local;

@@ -15,15 +15,15 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Longest wait for leaving the match when closing.
+/// Longest time that closing waits until the match is left.
 const LEAVE_TIME: Duration = Duration::from_millis(500);
-/// Interval of updates during this wait.
+/// Interval of updates while closing waits.
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
 /// Participant of a network match: host, player or spectator.
 ///
-/// The match follows a shared clock, so it can neither be paused nor sought. The last ticks shown may contain guessed
-/// inputs. The replay contains only final ticks.
+/// The match follows a clock that all peers share, so it can neither be paused nor sought. The inputs of the last ticks
+/// that are shown may be guessed. The replay contains only final ticks.
 ///
 /// ```
 /// use std::time::Duration;
@@ -52,7 +52,7 @@ pub struct Online<G: Game, T: Transport> {
     now: Duration,
     controls: Controls<G::Input>,
     presentation: Presentation<G>,
-    /// Replay taken from the peer so far.
+    /// The bytes of the replay that the peer has returned so far.
     replay: Vec<u8>,
     desync: Option<PeerDesync>,
     /// Text of the peer's last event.
@@ -66,7 +66,7 @@ pub struct Online<G: Game, T: Transport> {
 }
 
 impl<G: Game + 'static, T: Transport> Online<G, T> {
-    /// Shows the match of a new peer, made from this setup. `controls` apply to all seats of the peer.
+    /// Shows the match of a new peer. `setup` must be the setup of the peer. `controls` apply to all seats of the peer.
     #[must_use]
     pub fn new(
         name: impl Into<String>,
@@ -112,7 +112,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
             let seats = self.peer.seats().len();
             let inputs: Vec<_> = (0..seats).map(|_| self.controls.input()).collect();
             if self.peer.advance(&inputs)? {
-                // A short tap counts for one tick.
+                // Forgets key presses, so that a short tap counts for one tick.
                 let _played = self.controls.take();
             }
         }
@@ -137,7 +137,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         }
     }
 
-    /// Returns a replay of the blocks taken from the peer so far. The match is still being recorded, so its ticks are
+    /// Returns a replay of the blocks that the peer has returned so far. The peer is still recording, so the ticks are
     /// played again into a second recording.
     fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
         if self.replay.is_empty() {

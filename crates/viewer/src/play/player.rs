@@ -8,10 +8,11 @@ use lockstep2d::lockstep::Game;
 use super::controls::Controls;
 use crate::event::{Event, Key};
 
-/// A computer player: returns the input for the next tick that is not played from the recording.
+/// A computer player. The function returns the input for the next tick. It is not called for ticks that are played from
+/// the recording.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 
-/// Creates a bot from the scene's random seed and the seat number.
+/// Creates a bot. The arguments are the scene's random seed and the seat number.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
 /// Control of a seat: keys, a bot or no player. Tests pass players to a [`LocalMatch`](crate::LocalMatch).

@@ -9,16 +9,16 @@ use lockstep2d_render::{Camera, DrawList};
 
 use crate::canvas::Canvas;
 
-/// Names and values.
+/// Names and values of fields.
 pub(crate) type Fields = Vec<(String, String)>;
 
 pub(crate) type Draw<G> = dyn Fn(&G, &mut Canvas<'_>);
 
 pub(crate) struct Presentation<G: Game> {
     pub(crate) draw: Rc<Draw<G>>,
-    /// One line, such as the score; may be empty.
+    /// Returns a line of text, such as the score. It may be empty.
     pub(crate) status: Rc<dyn Fn(&G) -> String>,
-    /// The state of the game's own rules.
+    /// Returns the state of the game's own rules.
     pub(crate) state: Rc<dyn Fn(&G) -> Fields>,
 }
 
@@ -54,7 +54,7 @@ fn own_state<G: Game>(game: &G) -> Fields {
     let all = fields(&game.save()).unwrap_or_default();
     let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();
     let Some(first) = world.first().map(Field::path) else { return listed(&all) };
-    // The path of the world in the save is found by the path of the world's first field.
+    // The path of the world inside the save precedes the path of the world's first field.
     let inside = all.iter().find_map(|field| field.path().strip_suffix(first)).map(str::to_owned);
     let of_world: BTreeSet<&str> = world.iter().map(Field::path).collect();
     let is_own = |field: &&Field| match inside.as_deref() {

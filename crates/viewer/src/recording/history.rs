@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 
-/// Maximum number of saves, because adding one may scan all.
+/// Maximum number of saves. It is limited because adding a save may scan all of them.
 const FRAMES_MAX: usize = 2048;
-/// Ticks added to the distance of a save from the current tick (ten seconds at 60 Hz). Within this distance, saves are
-/// about equally dense.
+/// Number of ticks added to the distance of a save from the current tick (ten seconds at 60 Hz). Because of it, saves
+/// are about equally dense within this distance.
 const NEAR: u64 = 600;
 
 /// Saves of a game at some ticks, within a memory budget.
 ///
-/// When the budget is used up, the least useful saves are dropped: gaps may grow in proportion to their distance from
-/// the current tick. So a step back is cheap, and the cost of a seek is proportional to its distance.
+/// When the budget is used up, the least useful saves are dropped. The gaps between saves may grow in proportion to
+/// their distance from the current tick. So a step back is cheap, and the cost of a seek is proportional to its
+/// distance.
 pub(super) struct History<S> {
     frames: BTreeMap<u64, Frame<S>>,
     bytes: usize,
@@ -39,8 +40,8 @@ impl<S> History<S> {
         self.frames.contains_key(&tick)
     }
 
-    /// Adds a save of `bytes` unshared memory. Drops the saves least useful at tick `here`, until the rest fits in the
-    /// budget or only the first and the last are left.
+    /// Adds a save. `bytes` is its memory that is not shared with other saves. Then drops the saves that are least
+    /// useful at tick `here`, until the others fit in the budget or only the first and the last are left.
     pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
         if self.has(tick) {
             return;
@@ -66,8 +67,8 @@ impl<S> History<S> {
         }
     }
 
-    /// Returns the save to drop, never the first or the last: its removal leaves the smallest gap relative to its
-    /// distance from `here` plus [`NEAR`].
+    /// Returns the save to drop, which is never the first or the last. Its removal leaves a gap. The gap divided by the
+    /// distance of the save from `here` plus [`NEAR`] is the smallest.
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));

@@ -1,4 +1,4 @@
-//! [`Recording`]: a game recorded while it is played, which can continue differently from any recorded tick.
+//! [`Recording`]: a game recorded while it is played. Play can continue from any recorded tick with new inputs.
 
 mod history;
 
@@ -15,25 +15,26 @@ const SAVE_INTERVAL: u64 = 4;
 /// Memory budget of the saves, in bytes.
 const SAVES_BYTES: usize = 256 << 20;
 
-/// Game and the recording of all its inputs. *Tick t* is the state after *t* ticks.
+/// A game, and the recording of all its inputs. *Tick t* is the state after *t* ticks.
 ///
-/// [`Recording::replay_tick`] plays on with the recorded inputs. [`Recording::play`] plays on with new inputs and drops
-/// the recorded ones that follow.
+/// [`Recording::replay_tick`] plays on with the recorded inputs. [`Recording::play`] plays on with new inputs, and
+/// drops the recorded inputs that follow.
 pub(crate) struct Recording<G: Game> {
     game: G,
     tick: u64,
-    /// Recorder before the first tick, for recording again after a cut.
+    /// The recorder before the first tick. When recorded ticks are dropped, a copy of it records the remaining ones
+    /// again.
     blank: Recorder<G>,
     recorder: Recorder<G>,
     log: InputLog<G::Input>,
     /// State hashes at the checkpoints.
     checkpoints: Vec<StateHash>,
-    /// Cumulative work units at each tick.
+    /// Sum of the work units of the recorded ticks up to each tick.
     work: Vec<u64>,
     history: History<G::Save>,
-    /// Unshared bytes of a save of a game in its current state.
+    /// Returns the bytes that a save does not share with other saves. The game must be in the saved state.
     weigh: fn(&G, &G::Save) -> usize,
-    /// Last recorded state, while the game is at an earlier tick.
+    /// State after the last recorded tick. `None` if the game is at this tick.
     end: Option<G::Save>,
 }
 
@@ -47,7 +48,7 @@ pub(crate) enum RecordingError {
     TooMuch,
     Record(RecordError),
     Log(InputError),
-    /// Replaying a tick gave another hash: saving and loading this game loses state.
+    /// Playing a tick again gave another hash, because saving and loading this game loses state.
     Forgetful {
         tick: u64,
     },
@@ -93,7 +94,7 @@ impl<G: Game> Recording<G> {
         self.work.last().copied().unwrap_or(0)
     }
 
-    /// Plays and records the next tick. Drops recorded ticks from there on first.
+    /// Plays and records the next tick. Recorded ticks from there on are dropped first.
     pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), RecordingError> {
         let work = self.game.work(inputs);
         if work > Limits::default().tick_work {
@@ -126,7 +127,8 @@ impl<G: Game> Recording<G> {
         if tick > self.ticks() {
             return Err(RecordingError::NoSuchTick { tick, ticks: self.ticks() });
         }
-        // Starts from an earlier tick, so that derived data such as contact points and events is available.
+        // Starts from an earlier tick and plays to the requested one, so that derived data such as contact points and
+        // events is available.
         let latest = self.history.latest(tick.saturating_sub(1));
         let elsewhere = latest.filter(|(from, _)| !(*from..=tick).contains(&self.tick));
         if let Some((from, save)) = elsewhere.map(|(from, save)| (from, save.clone())) {

@@ -1,4 +1,4 @@
-//! [`Source`]: the interface of what the viewer can show.
+//! [`Source`]: the interface of everything that the viewer can show.
 
 mod open;
 mod replay;
@@ -64,7 +64,7 @@ pub trait Source {
     /// The last tick that can be sought; `None` if the source has no end.
     fn ticks(&self) -> Option<u64>;
 
-    /// Last tick on the timeline: for a source without an end, the last one played so far.
+    /// Last tick on the timeline. For a source without an end, this is the last tick played so far.
     fn recorded(&self) -> u64 {
         self.ticks().unwrap_or_else(|| self.tick())
     }
@@ -98,8 +98,8 @@ pub trait Source {
         Vec::new()
     }
 
-    /// Advances a source with its own clock, such as a network match, and returns `true` for one. The viewer cannot
-    /// play or pause it.
+    /// Advances a source that has its own clock, such as a network match, and returns `true`. The viewer can neither
+    /// play nor pause such a source. Other sources return `false`.
     ///
     /// # Errors
     /// [`SourceError`] if the source cannot continue.
@@ -118,7 +118,8 @@ pub trait Source {
         None
     }
 
-    /// Closes the source before the program ends, for example leaves a network match. Should take at most a second.
+    /// Closes the source before the program ends. For example, leaves a network match. This should take at most a
+    /// second.
     fn close(&mut self) {}
 
     /// Names and values of the state of the game's own rules, besides the world.

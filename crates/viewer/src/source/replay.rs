@@ -9,10 +9,10 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Initial interval between keyframes, in ticks: a shorter one makes seeking faster and takes more memory.
+/// Initial interval between keyframes, in ticks. With a shorter interval, seeking is faster and takes more memory.
 const INTERVAL: u32 = 60;
 
-/// Work units after which a call of [`Source::think`] stops verifying.
+/// Number of work units after which a call of [`Source::think`] stops verifying.
 const THINK_WORK: u64 = 100_000;
 
 /// Replay of a game, verified in the background while it is shown.
@@ -79,7 +79,7 @@ impl<G: Game + 'static> Replay<G> {
         if tick == self.timeline.tick() {
             return Ok(());
         }
-        // Steps to the tick, so that derived data such as contact points is available.
+        // Seeks to the tick before and plays the last tick, so that derived data such as contact points is available.
         let Some(before) = tick.checked_sub(1) else {
             return self.timeline.seek(tick).map_err(SourceError::of);
         };

@@ -9,7 +9,7 @@ use super::{Source, SourceError};
 
 /// Initial interval between saves, in ticks.
 const INTERVAL: u64 = 30;
-/// Maximum number of saves. Beyond it, every second save is dropped and the interval doubles.
+/// Maximum number of saves. When there are more, every second save is dropped and the interval doubles.
 const SAVES_MAX: usize = 256;
 
 /// World of a snapshot, which runs on without input. *Tick t* is tick *t* of the world.
@@ -94,7 +94,7 @@ impl Source for Snapshot {
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let tick = tick.max(self.first);
         if tick < self.world.tick() {
-            // Steps to `tick` from an earlier save, so that contact points are available.
+            // Plays to `tick` from an earlier save, so that derived data such as contact points is available.
             let before = tick.saturating_sub(1).max(self.first);
             if let Some((_, save)) = self.saves.range(..=before).next_back() {
                 self.world.restore(save);

@@ -51,9 +51,9 @@ impl Host {
         app.handle(Event::Dropped { name, bytes });
     }
 
-    /// Sleeps if the display does not pace the frames, as with a virtual display. `elapsed` is in seconds.
+    /// Sleeps if the display does not limit the frame rate, as with a virtual display. `elapsed` is in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// Smallest plausible frame time, in seconds.
+        /// Shortest frame time, in seconds, with which the display seems to limit the frame rate.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));
@@ -61,7 +61,7 @@ impl Host {
     }
 }
 
-/// Replaces a file atomically. Pipes and devices are written directly.
+/// Replaces a file atomically. A pipe or device is written directly.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return fs::write(path, bytes);
@@ -70,14 +70,14 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(beside, path)
 }
 
-/// Writes a new file, under a name with a number if `name` exists.
+/// Writes a new file. If `name` exists, a number is added to the name.
 fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     let beside = write_beside(Path::new(name), bytes)?;
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
     let numbered = (2..1000).map(|number| format!("{stem}-{number}.{ending}"));
     let mut outcome = Err(io::ErrorKind::AlreadyExists.into());
     for path in std::iter::once(name.to_owned()).chain(numbered).map(PathBuf::from) {
-        // Unlike a rename, a hard link never replaces a file.
+        // A hard link never replaces a file, but a rename does.
         outcome = fs::hard_link(&beside, &path).map(|()| path);
         if !outcome.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::AlreadyExists) {
             break;

@@ -9,7 +9,7 @@ pub(super) struct Keyboard {
 }
 
 impl Keyboard {
-    /// Handles a key that goes down or repeats. Returns it if the viewer should get the event.
+    /// Handles a key that goes down or repeats. Returns the key if the viewer should get the event.
     pub(super) fn down(&mut self, code: KeyCode, repeat: bool) -> Option<Key> {
         let key = key(code)?;
         if !self.down.contains(&code) {
@@ -18,8 +18,8 @@ impl Keyboard {
         (!repeat || repeats(key)).then_some(key)
     }
 
-    /// Handles a key that goes up. Returns it unless another key of this meaning is still down, such as the other Shift
-    /// key.
+    /// Handles a key that goes up. Returns the key, unless another key with the same meaning is still down, such as the
+    /// other Shift key.
     pub(super) fn up(&mut self, code: KeyCode) -> Option<Key> {
         self.down.retain(|&down| down != code);
         let key = key(code)?;
@@ -32,7 +32,7 @@ impl Keyboard {
     }
 }
 
-/// Keys that step repeat. Keys that toggle a setting do not.
+/// Whether a key repeats while it is held. Keys that step do; keys that toggle a setting do not.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))
@@ -60,7 +60,7 @@ fn key(code: KeyCode) -> Option<Key> {
 }
 
 fn character(code: KeyCode) -> Option<char> {
-    // The code of a printable key is the ASCII code of its character.
+    // The code of a printable key is the ASCII code of the key's character.
     let ascii = u8::try_from(code as u16).ok().map(char::from).filter(char::is_ascii_graphic);
     ascii.map(|character| character.to_ascii_lowercase()).or(match code {
         KeyCode::KpAdd => Some('+'),
@@ -91,7 +91,7 @@ pub(super) fn button(button: MouseButton) -> Option<Button> {
     }
 }
 
-/// Wheel movement that miniquad reports for one notch: a line, or the scroll distance of the platform.
+/// Wheel movement that miniquad reports for one notch. This is a line or the scroll distance of the platform.
 const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     100.0
 } else if cfg!(target_os = "windows") {
@@ -100,7 +100,7 @@ const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     1.0
 };
 
-/// Converts a wheel movement to notches, clamped to ten.
+/// Converts a wheel movement to notches, clamped to ten in both directions.
 pub(super) fn notches(turned: f32) -> f32 {
     let notches = turned / NOTCH;
     if notches.is_finite() { notches.clamp(-10.0, 10.0) } else { 0.0 }

@@ -1,4 +1,4 @@
-//! The window: passes miniquad's events to the viewer and shows its picture.
+//! The window: passes miniquad's events to the viewer, and shows the viewer's picture.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 mod host;
@@ -24,7 +24,7 @@ pub(crate) struct Options {
     pub(crate) title: String,
     pub(crate) size: [u16; 2],
     pub(crate) script: Option<Script>,
-    /// File to save the recording to.
+    /// File to which the recording is saved.
     pub(crate) output: Option<PathBuf>,
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for WindowError {
 
 impl std::error::Error for WindowError {}
 
-/// Result of the window, shared with the event handler.
+/// Result of running the window. It is shared with the event handler.
 type Outcome = Rc<RefCell<Result<(), WindowError>>>;
 
 /// Shows the viewer in a window until it is closed. In a browser, returns at once.

@@ -1,6 +1,6 @@
 //! [`Host`]: the web page around the viewer.
 //!
-//! The page reads lines from the log, with fields separated by tabs:
+//! The page reads lines from the log. The fields of a line are separated by tabs:
 //!
 //! ```text
 //! lockstep2d.report  name  tick  last tick or nothing  hash or nothing  status
@@ -14,7 +14,7 @@ use crate::{App, Event, Report, Request};
 
 use super::WindowError;
 
-/// Extension of the empty file by which the page requests a scene.
+/// Extension of a file name by which the page requests a scene. The file is empty.
 const SCENE: &str = ".scene";
 
 pub(super) struct Host {
@@ -60,11 +60,11 @@ impl Host {
         }
     }
 
-    /// The browser paces the frames.
+    /// Does nothing, because the browser limits the frame rate.
     pub(super) fn pace(&self, _elapsed: f64) {}
 }
 
-/// The macro does not format a sole argument.
+/// Writes a line to the log. The format string is needed, because the macro does not format a sole argument.
 fn post_line(line: &str) {
     miniquad::info!("{}", line);
 }

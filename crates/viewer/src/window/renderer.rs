@@ -39,11 +39,12 @@ pub(super) struct Renderer {
     context: Box<dyn RenderingBackend>,
     pipeline: Pipeline,
     atlas: TextureId,
-    /// A pair of buffers per chunk: a single pair would stall until the GPU has read the previous chunk.
+    /// A pair of buffers for each chunk. With a single pair, drawing would wait until the GPU has read the previous
+    /// chunk.
     buffers: Vec<[BufferId; 2]>,
 }
 
-/// Picture: red, green, blue and opacity of each pixel, rows from top to bottom.
+/// A picture: red, green, blue and opacity of each pixel, rows from top to bottom.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) struct Picture {
     pub(super) width: u32,
@@ -68,7 +69,7 @@ impl Renderer {
         };
         let blending = PipelineParams {
             color_blend: over(BlendFactor::Value(BlendValue::SourceAlpha)),
-            // Keeps the canvas opaque: a browser would otherwise blend it with the page behind it.
+            // Keeps the canvas opaque. Otherwise a browser would blend it with the page behind it.
             alpha_blend: over(BlendFactor::One),
             ..PipelineParams::default()
         };
@@ -85,7 +86,7 @@ impl Renderer {
         self.context.commit_frame();
     }
 
-    /// Draws a mesh into a picture, with the shader of the screen.
+    /// Draws a mesh into a picture, with the same shader as on the screen.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn picture(&mut self, mesh: &Mesh, screen: &Screen, [width, height]: [u32; 2]) -> Picture {
         self.upload(mesh);

@@ -31,7 +31,7 @@ pub(super) struct Stage {
     outcome: Outcome,
 }
 
-/// Replacement for the stage if the graphics driver refuses the shader.
+/// Event handler that does nothing. It replaces the stage if the graphics driver refuses the shader.
 struct Nothing;
 
 impl EventHandler for Nothing {
@@ -75,7 +75,7 @@ impl Stage {
         Box::new(stage)
     }
 
-    /// Converts screen pixels to units of the draw list.
+    /// Converts a position from screen pixels to units of the draw list.
     fn place(&self, x: f32, y: f32) -> [f32; 2] {
         [x, y].map(|at| at * self.screen.pixel)
     }
@@ -85,7 +85,7 @@ impl Stage {
         self.app.handle(Event::Moved(place));
     }
 
-    /// Returns `false` at the end of a script.
+    /// Runs a frame. Returns `false` at the end of a script.
     fn go_on(&mut self) -> Result<bool, WindowError> {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(mut performance) = self.performance.take() {
@@ -171,7 +171,7 @@ impl EventHandler for Stage {
         }
     }
 
-    /// Releases the keys: another window has the focus and receives the key releases.
+    /// Releases all keys, because their releases will go to another window.
     fn window_minimized_event(&mut self) {
         for key in self.keyboard.release() {
             self.app.handle(Event::Released(key));

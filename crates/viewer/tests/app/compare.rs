@@ -7,7 +7,7 @@ use lockstep2d_viewer::{Event, Key};
 
 use super::common::{app_of, frames, press, replay, texts, wait_for};
 
-/// Replay in which the fifth dynamic body gets an impulse in the tick after tick 90.
+/// Replay in which the fifth dynamic body gets an impulse after tick 90.
 fn pushed() -> Vec<u8> {
     replay("box_stack", 200, |tick, game| {
         let fifth = game.world().bodies().filter(|(_, body)| body.is_dynamic()).nth(4).unwrap();

@@ -1,4 +1,4 @@
-//! Live sessions driven by window events: whatever the user does, the saved replay verifies.
+//! Live sessions driven by window events. The saved replay verifies, whatever the user does.
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::Rng;

@@ -51,14 +51,14 @@ fn a_click_in_the_list_of_layers_switches_one() {
 fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
     let file = replay("box_stack", 100, |_, _| vec![]);
     let mut app = app_of(file.clone());
-    // The id labels give the positions of the bodies.
+    // The id labels show where the bodies are.
     press(&mut app, layer("ids"));
     frames(&mut app, 1);
     let labels: Vec<_> =
         app.draw().texts().iter().filter(|text| text.text.ends_with("v0")).cloned().collect();
     assert!(labels.len() > 5, "{labels:?}");
     let label = &labels[4];
-    // A label is to the right of the centre of mass and above it.
+    // A label is to the right of the body's centre of mass, and above it.
     click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
     let lines = texts(&mut app);
     assert!(lines.contains(&format!("body {}", label.text)), "{lines:?}");

@@ -49,7 +49,7 @@ fn every_tick_has_its_hash_whichever_way_one_comes() {
     wait_for(&mut app, 50);
 }
 
-/// Compares derived data such as contact points, too, which a restored save lacks.
+/// Also compares derived data such as contact points, which a restored save lacks.
 #[test]
 fn ten_ticks_back_everything_is_seen_as_it_was() {
     let mut app = app_of(file());

@@ -1,4 +1,4 @@
-//! The window on a virtual screen: compares the real pixels with draw lists and replays.
+//! The window on a virtual screen. Its pixels are compared with draw lists and replays.
 //!
 //! `crates/viewer/test-window` installs the required packages and starts the screen.
 #![expect(

@@ -1,4 +1,4 @@
-//! Each layer changes the pixels as in a software rendering of the draw list.
+//! Each layer changes the same pixels in the window as in a software rendering of the draw list.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,8 @@ use super::run::{app, directory, golden, play, play_without_window};
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
-/// Takes a screenshot without layers, one with each layer alone, and one after it is turned off again.
+/// Takes a screenshot without layers. Then, for each layer, takes one with this layer alone, and one after it is turned
+/// off again.
 fn script() -> String {
     let forward = "key pagedown\n".repeat(SECONDS);
     let mut script =
@@ -39,13 +40,13 @@ fn each_overlay_is_what_the_draw_list_says() {
         let share = if ['6', 'i'].contains(&key) { LABELS } else { SHAPES };
         assert_alike(&format!("layer {key}"), &on, &drawn, share);
 
-        // Leaves out the layer list, where a star marks the layer.
+        // Leaves out the layer list, where a star marks each layer that is on.
         let in_world = |place: &[usize; 2]| place[0] > 180 || place[1] > 320;
         let changed = |a: &Picture, b: &Picture, step| -> BTreeSet<_> {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // A faint pixel may be fainter in one picture.
+        // A pixel may change less in one picture, so the other picture is compared with a smaller step.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());
         assert!(seen.len() > 30, "layer {key}: only {} pixels change", seen.len());
@@ -62,9 +63,9 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// One pixel in this many may differ by much, because of crossing lines.
+/// Largest share of pixels that may differ by much, because of crossing lines: one in this many.
 const SHAPES: usize = 1000;
-/// One pixel in this many may differ in layers with small text, which only one rasteriser aligns to pixels.
+/// Largest such share in layers with small text, which only one of the two rasterisers aligns to pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.

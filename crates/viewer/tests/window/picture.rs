@@ -1,4 +1,4 @@
-//! [`Picture`]: reads and compares the pixels of a picture.
+//! [`Picture`]: the pixels of a picture, read from a file and compared.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// Largest difference over the channels.
+/// Largest difference in any channel.
 pub(crate) fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
     (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap()
 }

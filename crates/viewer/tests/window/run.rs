@@ -37,7 +37,7 @@ pub(crate) fn play(directory: &Path, script: &str, args: &[&str]) -> Vec<String>
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
-/// Runs a script without a window, and returns its screenshots by the software rasteriser.
+/// Runs a script without a window. Returns its screenshots, made by the software rasteriser.
 pub(crate) fn play_without_window(mut app: App, script: &str) -> Vec<Picture> {
     play_without_window_in(&mut app, script)
 }

@@ -15,11 +15,11 @@ fn a_screenshot_is_what_is_on_the_screen() {
     let screen = PathBuf::from(
         std::env::var_os(SCREEN).expect("LOCKSTEP2D_SCREEN should be set by crates/viewer/test-window"),
     );
-    // The scene has only edges along the axes: the screen may round the blending of slanted edges differently.
+    // All edges in this scene are along the axes. The screen may round the blending of slanted edges differently.
     let (directory, replay) = (directory("screen"), golden("box_stack.replay"));
     let shot = directory.join("shot.png");
     let _none = std::fs::remove_file(&shot);
-    // 300 frames complete the verification, which would change the picture.
+    // After 300 frames, the verification is complete. Its progress would change the picture.
     let script = "key space\nkey home\nkey pagedown\nframes 300\nscreenshot shot.png\nframes 100000\n";
     let mut window = command(&directory, script, &[replay.to_str().unwrap()]).spawn().unwrap();
     let alike = wait_for(Duration::from_secs(60), || shot.exists() && is_on(&screen, &shot));

@@ -1,4 +1,4 @@
-//! Stepping back shows the same pixels as before.
+//! After stepping back, the pixels are the same as before.
 
 use lockstep2d_render::{CELL_HEIGHT, CELL_WIDTH, glyph};
 use lockstep2d_viewer::App;
@@ -16,7 +16,8 @@ fn ten_ticks_back_is_pixel_for_pixel_what_it_was() {
         let (directory, replay) = (directory("back"), golden(replay));
         let ten = |key: &str| format!("key {key}\nframes 2\n").repeat(10);
         let (right, left) = (ten("right"), ten("left"));
-        // 400 frames complete the verification, which would change the picture. 100 frames play 100 ticks.
+        // After 400 frames, the verification is complete. Its progress would change the picture. The next 100 frames
+        // play 100 ticks.
         let script = format!(
             "{ALL}key space\nkey home\nframes 400\nkey space\nframes 100\nkey space\nscreenshot played.png\nreport\n\
              {right}screenshot further.png\nreport\n{left}screenshot back.png\nreport\n\

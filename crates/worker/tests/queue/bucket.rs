@@ -13,7 +13,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    /// Serves the subfolder `in` as the bucket `uploads`, if `LOCKSTEP2D_S3` is the path of `s3s-fs`.
+    /// Serves the subfolder `in` as the bucket `uploads`. Returns `None` unless `LOCKSTEP2D_S3` is the path of
+    /// `s3s-fs`.
     fn start(folder: &Folder) -> Option<Self> {
         let Ok(program) = std::env::var("LOCKSTEP2D_S3") else {
             eprintln!("skipped: LOCKSTEP2D_S3 does not name a server");
@@ -28,7 +29,7 @@ impl Buckets {
         Some(Buckets { port, _process: serve(&mut command, port) })
     }
 
-    /// The program with this key in its environment.
+    /// The program, with this secret key of the bucket in its environment.
     fn with_key(&self, program: Program, key: &'static str) -> Program {
         let endpoint = format!("http://127.0.0.1:{}", self.port);
         let variables = [
@@ -50,12 +51,12 @@ fn files_of_a_bucket_have_the_results_of_files() {
     write_files(&folder, 30);
     folder.write("in/notes.txt", b"not a replay");
     let expected = verified(&folder);
-    // The folder does not have the files.
+    // The worker runs in a folder without the files.
     let elsewhere = Folder::new("bucket-elsewhere");
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
 
-    // The file that is submitted first is known later.
+    // One file is submitted first. When all files are submitted, it is known.
     let one = program.submit(&["--bucket", "s3://uploads", "00007.replay"]);
     assert_eq!(one.len(), 1, "{one:?}");
     let all = program.submit(&["--bucket", "s3://uploads/"]);
@@ -94,7 +95,7 @@ fn a_folder_of_a_bucket_holds_what_is_in_it() {
     assert_eq!(names(&["s3://uploads", "day"]), ["day/b.replay", "day/night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day"]), ["b.replay", "night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day", "night", "b.replay"]), ["b.replay", "night/c.replay"]);
-    // Files with the same bytes are one job, with the first name.
+    // Files with the same bytes are one job, which has the name of the first file.
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 2);
     assert_eq!(child.terminate(), Some(0));
@@ -125,7 +126,7 @@ fn a_bucket_that_cannot_be_read_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(expected), "{arguments:?}: {error}");
     }
-    // A worker without the right key reports the file as unreadable.
+    // A worker without the right key reports that the file cannot be read.
     allowed.submit(&["--bucket", "s3://uploads"]);
     let mut child = forged.work(&["--bucket", "s3://uploads", "--max-deliver", "1"]);
     wait_until("there is a result", || forged.results().len() == 1);

@@ -1,7 +1,7 @@
-//! The queue with a real server: every file has one result, equal to the line of `verify --json`, also if workers or
-//! the server are killed.
+//! The queue with a real server. Every file has one result, which is equal to the line of `verify --json`. This also
+//! holds if workers or the server are killed.
 //!
-//! `LOCKSTEP2D_WORKER_FILES`: files of the largest test, 300 by default.
+//! `LOCKSTEP2D_WORKER_FILES` is the number of files in the largest test, 300 by default.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
@@ -25,7 +25,7 @@ use serde_json::{Value, json};
 
 use server::{Folder, PATIENCE, Process, Program, Server, free_port, wait_until};
 
-/// Workers that are killed and started again.
+/// Number of workers that are killed and started again.
 const WORKERS: usize = 4;
 
 /// SplitMix64.
@@ -35,7 +35,7 @@ fn random(state: &mut u64) -> u64 {
     value ^ (value >> 27)
 }
 
-/// Squares fall on the ground. Each `number` is another game.
+/// A replay of squares that fall on the ground. Each `number` gives another game.
 fn replay(number: u64, squares: i64, ticks: u64) -> Vec<u8> {
     let square = |side: Fx| ShapeDef::new(Polygon::square(side).unwrap());
     let aside = fx!(0.0001) * i64::try_from(number).unwrap();
@@ -55,7 +55,7 @@ fn record(commands: Vec<Command>, ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Some files are damaged, some cut.
+/// Writes `count` files. Some are damaged, and some are cut.
 fn write_files(folder: &Folder, count: u64) {
     for number in 0..count {
         let (squares, ticks) = if number % 20 == 0 { (50, 120) } else { (1, number % 97) };
@@ -77,7 +77,7 @@ fn verified(folder: &Folder) -> Vec<String> {
     let arguments = ["verify", "--json"].map(String::from);
     let arguments = ["lockstep2d".into()].into_iter().chain(arguments).chain([path.display().to_string()]);
     Tool::<Sandbox>::new().run_with(arguments, &mut out, &mut err);
-    // Paths of results are relative to the folder.
+    // In the results, paths are relative to the folder.
     let below = format!("{}/", folder.0.display());
     let mut lines: Vec<String> =
         String::from_utf8(out).unwrap().lines().map(|line| line.replacen(&below, "", 1)).collect();
@@ -116,7 +116,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
             server.restart();
             restarts += 1;
         }
-        // One kill for each 30 results, except the last.
+        // Kills a worker after every 30 results, except after the last result.
         while kills < found / 30 && found < count {
             let victim = usize::try_from(random(&mut state) % WORKERS as u64).unwrap();
             workers[victim].kill();
@@ -133,7 +133,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
     assert_eq!(program.results(), expected);
 }
 
-/// Time in which workers verify all submitted files.
+/// Time in which this number of workers verifies all submitted files.
 fn time_of(workers: usize, program: &Program, queue: &str, count: usize) -> Duration {
     program.submit(&["--queue", queue, "in"]);
     let start = Instant::now();
@@ -142,7 +142,7 @@ fn time_of(workers: usize, program: &Program, queue: &str, count: usize) -> Dura
         || program.run(&["results", "--queue", queue]).stdout.split(|byte| *byte == b'\n').count() - 1;
     while results() < count {
         assert!(start.elapsed() < PATIENCE, "waited too long for {count} results");
-        // Polling takes processor time from the workers.
+        // Polls rarely, because polling takes processor time from the workers.
         std::thread::sleep(Duration::from_millis(200));
     }
     let time = start.elapsed();
@@ -169,12 +169,12 @@ fn two_workers_do_almost_twice_as_much_as_one() {
         println!("{count} files: {one:?} with one worker, {two:?} with two");
         one.as_millis() * 100 / two.as_millis()
     };
-    // The best of three: other programs can only reduce the gain.
+    // Takes the best of three, because other programs can only reduce the gain.
     let best = (0..3).map(gain).max().unwrap();
     assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// A file has 400 squares on one spot, for which docs/VERIFYING.md states 75 MB with `verify`.
+/// One file has 400 squares on one spot. For such a file, docs/VERIFYING.md states that `verify` takes 75 MB.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {
@@ -211,7 +211,8 @@ fn the_same_bytes_have_one_result_and_are_not_simulated_again() {
     assert_eq!(queued, [true, false]);
     assert_eq!(submitted[0]["blake3"], submitted[1]["blake3"]);
 
-    // Other limits give other keys. The second worker adds no result: the queue has one job for these bytes.
+    // Other limits give other keys. But the second worker adds no result, because the job of these bytes has left the
+    // queue.
     for (arguments, count) in [(&["--max-ticks", "30"][..], 1), (&["--max-ticks", "29"], 1)] {
         let mut child = program.work(arguments);
         wait_until("there is a result", || program.results().len() == count);
@@ -227,7 +228,7 @@ fn files_of_the_object_store_and_metrics() {
     let expected = verified(&folder);
     let program = worker(&server, &folder);
     program.submit(&["--objects", "in"]);
-    // The folder does not have the files.
+    // The worker runs in a folder without the files.
     let elsewhere = Folder::new("objects-elsewhere");
     let away = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let address = format!("127.0.0.1:{}", free_port());
@@ -242,7 +243,7 @@ fn files_of_the_object_store_and_metrics() {
         stream.read_to_string(&mut text).unwrap();
         text
     };
-    // The last result is counted after it was added.
+    // A worker counts a result only after adding it, so the last one may not be counted yet.
     let counted = "lockstep2d_worker_results_total{verdict=\"match\"} ";
     let matches = expected.iter().filter(|line| line.contains("\"verdict\":\"match\"")).count();
     wait_until("it is counted", || get("/metrics").contains(&format!("{counted}{matches}\n")));

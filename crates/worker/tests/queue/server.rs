@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest wait.
+/// Longest wait for an expected event.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Commands of the server. The second is its path in Debian, outside of many search paths.
+/// Commands that start the server. The second is its path in Debian, because this folder is not in every search path.
 const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
 
 /// Process that is killed on drop.
@@ -34,7 +34,7 @@ impl Process {
     }
 }
 
-/// Server on a port of its own.
+/// A server on a port that no other server uses.
 pub(crate) struct Server {
     program: &'static str,
     port: u16,
@@ -43,7 +43,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// `None` if it is not installed, which is an error with `LOCKSTEP2D_NATS=required`.
+    /// Starts a server. Returns `None` if it is not installed. With `LOCKSTEP2D_NATS=required`, this is an error.
     pub(crate) fn start(folder: &Folder) -> Option<Self> {
         let is_there = |program: &&&str| Command::new(program).arg("--version").output().is_ok();
         let Some(program) = PROGRAMS.iter().find(is_there) else {
@@ -95,7 +95,7 @@ pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// A worker, or a program with its commands.
+/// A worker, or another program with the same commands.
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) url: String,
@@ -120,14 +120,14 @@ impl Program {
         command
     }
 
-    /// Returns the lines about the added files.
+    /// Runs `submit`. Returns the lines about the added files.
     pub(crate) fn submit(&self, arguments: &[&str]) -> Vec<String> {
         let output = self.run(&[&["submit"], arguments].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         lines(&output)
     }
 
-    /// Sorted results. They may be missing while the server restarts.
+    /// Sorted results. Some may be missing while the server restarts.
     pub(crate) fn results(&self) -> Vec<String> {
         let mut lines = lines(&self.run(&["results"]));
         lines.sort();

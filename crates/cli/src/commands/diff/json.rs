@@ -79,8 +79,8 @@ pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     differences.iter().map(field).collect()
 }
 
-/// A value as text. Numbers, angles and booleans also have bits, as text since they may exceed the range of JSON
-/// numbers.
+/// A value as text. Numbers, angles and booleans also have their bits, which are text because they may exceed the range
+/// of JSON numbers.
 fn value(value: Option<&Value>) -> Json {
     value.map_or(
         Json::Null,

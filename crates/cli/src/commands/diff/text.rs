@@ -106,7 +106,7 @@ impl Text<'_> {
         self.lines(&input.differences, f)
     }
 
-    /// At most `subjects` fields, and the number of the others.
+    /// Prints at most `subjects` fields, and the number of the fields that are left out.
     fn lines(&self, differences: &[Difference], f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = differences.iter().take(self.subjects);
         shown.try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
@@ -169,7 +169,7 @@ impl fmt::Display for Line<'_> {
             "" => "value",
             name => name,
         };
-        // Texts of an untrusted file are escaped.
+        // The texts may come from an untrusted file, so they are escaped.
         let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
         write!(f, "{}", Shown(Path::new(&text)))
     }

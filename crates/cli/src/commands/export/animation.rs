@@ -16,11 +16,11 @@ use crate::error::CommandError;
 const FRAME_RATE_MAX: u32 = 30;
 /// Default width in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
-/// Highest frame rate of a GIF in most programs: their shortest frame time is 2/100 s.
+/// Highest frame rate that most programs show for a GIF. Their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// Maximum number of ticks, besides the last one, that are sampled for a fitting window.
+/// Maximum number of ticks that are sampled to find a window. The last tick is sampled in addition.
 const SAMPLES: u64 = 100;
-/// Number of sampled ticks for each sample picture of the palette.
+/// One in this many sampled ticks gives a sample picture for the palette.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Plays the replay twice. The first pass finds the window and the colours, and fails before anything is written.
@@ -76,7 +76,7 @@ impl Frames {
         (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
     }
 
-    /// At most `SAMPLES` + 1 ticks, including the first and the last.
+    /// The ticks to sample: at most `SAMPLES` + 1, including the first and the last.
     fn samples(&self) -> impl Iterator<Item = u64> {
         let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
         (0..SAMPLES)
@@ -90,13 +90,13 @@ struct Camera<'a, G: Game> {
     view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
-    /// Window of all frames, unless the game or the arguments set one.
+    /// Window of all frames. Not used if the game or the arguments set one.
     window: Option<Aabb>,
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames have one size. Its aspect ratio is that of the game's view, unless the arguments set both sides or a
-    /// side would be outside of 64 to 16384 pixels.
+    /// Determines the size of all frames. Their aspect ratio is that of the game's view, unless the arguments set both
+    /// sides or a side would be outside of 64 to 16384 pixels.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,

@@ -41,7 +41,7 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// The format of an option or, without an option, of the extension of the output file.
+    /// The format that an option selects. Without such an option, it follows from the extension of the output file.
     pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
         let Formats { svg, png, gif, apng, json, plot } = *self;
         let asked = [
@@ -76,7 +76,8 @@ fn by_extension(output: Option<&Path>) -> Option<Format> {
 }
 
 impl Format {
-    /// Refuses the extension of another format. A plot may end in .svg, and an animated PNG in .png.
+    /// Refuses an output file with the extension of another format. A plot may end in .svg, and an animated PNG in
+    /// .png.
     fn checked(self, output: Option<&Path>) -> Result<Self, CommandError> {
         let (Some(other), Some(path)) = (by_extension(output), output) else { return Ok(self) };
         let fits = match self {

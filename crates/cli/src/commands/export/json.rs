@@ -22,7 +22,7 @@ pub(super) fn write<G: Game>(
     Ok(())
 }
 
-/// The tick comes first, so that the beginning of a long line identifies it.
+/// One line of JSON. The tick comes first, so that the beginning of a long line identifies it.
 pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
     let mut state =
         serde_json::to_value(save).map_err(|error| CommandError::State { why: error.to_string() })?;
@@ -33,7 +33,7 @@ pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result
     Ok(format!("{{\"tick\":{tick},\"hash\":\"{hash}\",\"state\":{state}}}"))
 }
 
-/// Adds a decimal beside the bits of each fixed-point number. `numbers` are sorted by path.
+/// Adds a decimal number beside the bits of each fixed-point number. `numbers` are sorted by path.
 fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
     let length = path.len();
     match value {
@@ -49,7 +49,8 @@ fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
             let is_single = entries.len() == 1;
             for (name, entry) in entries {
                 push_name(path, name);
-                // JSON nests the fields of an enum variant under its name, which paths do not contain.
+                // JSON nests the fields of an enum variant under the name of the variant. Paths do not contain this
+                // name.
                 if is_single && !is_beginning(path, numbers) {
                     path.truncate(length);
                 }

@@ -9,7 +9,7 @@ use super::{Arguments, Output};
 use crate::console::Console;
 use crate::context::CommandResult;
 
-/// Writes an SVG document for [`Format::Svg`], a PNG file for any other format.
+/// Writes an SVG document for [`Format::Svg`], and a PNG file for any other format.
 pub(super) fn write(
     world: &World,
     view: &View,
@@ -26,7 +26,7 @@ pub(super) fn write(
     })
 }
 
-/// `list` is cleared and reused.
+/// Draws a world. `list` is cleared and reused.
 pub(super) fn image(list: &mut DrawList, world: &World, view: &View) -> Image {
     list.clear();
     page(list, world, view);

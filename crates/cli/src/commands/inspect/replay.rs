@@ -57,7 +57,7 @@ struct Bytes {
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// Bytes after the intact part.
+    /// Number of bytes after the intact part.
     rest: u64,
 }
 

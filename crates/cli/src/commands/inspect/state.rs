@@ -45,7 +45,7 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     let is_body = |id: &str| {
         let name = field.subject().and_then(|subject| subject.rsplit('.').next());
         let found = name.and_then(|name| name.strip_prefix("body "));
-        // The text of a body is its handle, then its name.
+        // The text is `body HANDLE NAME`. The name may be missing.
         let mut words = found.into_iter().flat_map(|found| found.split(' '));
         words.next().is_some_and(|handle| handle == id || handle.split('v').next() == Some(id))
             || words.next() == Some(id)
@@ -63,14 +63,14 @@ fn nothing(arguments: &Arguments) -> CommandError {
     CommandError::NothingThere { what }
 }
 
-/// A field on one line, escaped: it may come from an untrusted file.
+/// A field on one line. It is escaped, because it may come from an untrusted file.
 pub(super) fn field_text(field: &Field) -> String {
     let path = if field.path().is_empty() { "value" } else { field.path() };
     shown(&format!("{path}: {}", field.value))
 }
 
-/// Path and value. Numbers, angles and booleans also have bits, as text since they may exceed the range of JSON
-/// numbers.
+/// Path and value of a field. Numbers, angles and booleans also have their bits, which are text because they may exceed
+/// the range of JSON numbers.
 pub(super) fn field_json(field: &Field) -> Json {
     let bits = field.value.bits().map(|bits| bits.to_string());
     json!({"path": field.path(), "text": field.value.to_string(), "bits": bits})

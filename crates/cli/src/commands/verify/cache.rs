@@ -13,17 +13,17 @@ use serde::{Deserialize, Serialize};
 use super::report::Report;
 use crate::console::json_text;
 
-/// Version of the cache, incremented when the meaning of an entry changes, or the verdict for the same bytes, rules and
-/// semantics.
+/// Version of the cache. It is incremented when the meaning of an entry changes, or when the verdict for the same
+/// bytes, rules and semantics changes.
 const VERSION: u32 = 1;
 
-/// Maximum number of bytes of an entry: enough for 256 claims.
+/// Maximum size of an entry in bytes. An entry with 256 claims is smaller.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
 
 /// A folder with a file for each report, named by a hash of everything that the report depends on.
 ///
-/// Processes may share it, also on several machines: an entry appears complete or not at all, and all its writers write
-/// the same bytes. A damaged entry counts as absent.
+/// Processes may share the folder, also on several machines. An entry appears complete or not at all, and all its
+/// writers write the same bytes. A damaged entry counts as absent.
 pub(super) struct Cache {
     folder: PathBuf,
     /// Hash of versions, rules and limits.
@@ -51,13 +51,13 @@ impl Cache {
     /// The cached report of a key, if it is undamaged.
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
         let (mut text, path) = (String::new(), self.path(key));
-        // Reading a pipe would block.
+        // Only regular files are read: reading a pipe would block.
         if !fs::metadata(&path).ok()?.is_file() {
             return None;
         }
         File::open(path).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;
-        // The checksum does not cover damage that decodes to the same report.
+        // The checksum covers the report. Damage that decodes to the same report is found by comparing the text.
         let is_whole = serde_json::to_string(&entry).ok()? == text;
         (is_whole && entry.checksum == checksum(key, &entry.report)).then_some(entry.report)
     }
@@ -89,7 +89,7 @@ pub(super) fn key(context: &Hash, bytes: &[u8; 32]) -> Hash {
 
 /// Hash of everything that a verdict depends on, except the file's bytes.
 pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
-    // A new limit does not compile until it is hashed here.
+    // Naming all fields makes this code fail to compile when a limit is added, so that the new limit is hashed.
     let Limits {
         file_bytes,
         setup_bytes,
@@ -122,7 +122,7 @@ pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
     for number in numbers {
         hasher.update(&number.to_le_bytes());
     }
-    // The only part of variable length comes last.
+    // The name comes last, because it is the only part of variable length.
     hasher.update(name);
     hasher.finalize()
 }

@@ -45,7 +45,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(())
     }
 
-    /// Prints files that take long, and updates the progress line.
+    /// Prints a line for each file that takes long, and updates the progress line.
     fn pause(&mut self) -> Result<Pause, CommandError> {
         for work in self.shared.watch.overdue() {
             self.progress.aside(|| self.console.note(work));
@@ -87,7 +87,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
     }
 
-    /// With `--json`, a path that cannot be read also gets a line among the results.
+    /// Prints an error. With `--json`, a path that cannot be read also gets a line among the results.
     fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         if let (true, CommandError::Read { path, error }) = (self.json, error) {
@@ -111,7 +111,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
         self.count_signed(signed);
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
-            // Warns once: the cause is usually the same for all files.
+            // Warns only once, because the cause is usually the same for all files.
             self.is_cache_failing = true;
             let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));
@@ -122,7 +122,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    /// The exit code is that of a file that cannot be read.
+    /// Prints that a file has exceeded its time limit. The exit code is that of a file that cannot be read.
     fn out_of_time(
         &mut self,
         path: &Path,

@@ -9,21 +9,23 @@ use signal_hook::{SigId, flag, low_level};
 /// Signal, its number in [`Interrupt`], and its name.
 const SIGNALS: [(i32, usize, &str); 2] = [(SIGINT, 1, "SIGINT"), (SIGTERM, 2, "SIGTERM")];
 
-/// Catches the signals while it exists. A second signal ends the process at once, even while the output is blocked.
+/// Catches the signals while this value exists. A second signal ends the process at once, even while the output is
+/// blocked.
 pub(super) struct Interrupt {
-    /// Number of the signal that arrived, as in [`SIGNALS`]; 0 before.
+    /// Number of the signal that arrived, as in [`SIGNALS`]; 0 if none has arrived.
     caught: Arc<AtomicUsize>,
     ids: Vec<SigId>,
 }
 
 impl Interrupt {
-    /// Does nothing without `owns_process`: a program that uses the tool as a library handles signals itself.
+    /// Begins to catch the signals. Does nothing without `owns_process`, because a program that uses the tool as a
+    /// library handles signals itself.
     pub(super) fn listen(owns_process: bool) -> Self {
         let (caught, again) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         let mut ids = Vec::new();
         for (signal, number, _) in SIGNALS.into_iter().filter(|_| owns_process) {
-            // Handlers run in the order of registration, so `again` is still false for the first handler at the first
-            // signal. A signal that cannot be registered is not caught.
+            // Handlers run in the order of registration. At the first signal, the first handler still finds `again` to
+            // be false, so it does not end the process. A signal that cannot be registered is not caught.
             ids.extend(flag::register_conditional_default(signal, Arc::clone(&again)));
             ids.extend(flag::register(signal, Arc::clone(&again)));
             ids.extend(flag::register_usize(signal, Arc::clone(&caught), number));

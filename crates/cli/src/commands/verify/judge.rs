@@ -1,4 +1,4 @@
-//! [`judge`]: plays one file and reports on it; panics of the game are caught.
+//! [`judge`]: plays one file and reports on it. A panic of the game is caught and reported.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -14,7 +14,7 @@ use crate::panics;
 pub(super) struct Shared {
     /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Ticks of all files played so far.
+    /// Number of ticks played so far in all files together.
     pub(super) ticks: AtomicU64,
     pub(super) watch: Watch,
 }
@@ -24,7 +24,7 @@ pub(super) enum Outcome {
     Report(Report),
     /// The file has exceeded its time limit.
     OutOfTime {
-        /// Ticks that were played.
+        /// Number of ticks that were played.
         ticks: u64,
     },
     /// No more results are needed.
@@ -54,7 +54,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     let report =
         |verdict: &Verdict, claims: &[_]| Outcome::Report(Report::new(length, verdict, claims, None));
     loop {
-        // A single tick may take long.
+        // Checked before every tick, because a single tick may take long.
         if shared.stop.load(Ordering::Relaxed) {
             return Outcome::Stopped;
         }

@@ -11,7 +11,7 @@ use super::cache;
 use super::judge::{Outcome, Shared, judge};
 use super::report::Digests;
 
-/// Verifies files of the game `G`, on any thread, and returns the lines of `verify --json` without `--cache` and
+/// Verifies files of the game `G`, on any thread. Returns the lines that `verify --json` prints without `--cache` and
 /// `--keys`.
 ///
 /// ```
@@ -66,9 +66,10 @@ impl<G: Game> Judge<G> {
         &self.limits
     }
 
-    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` if [`Judge::stop`] has ended it.
+    /// Verifies the bytes of a file. If the game panics, the verdict is `panicked`. Returns `None` if [`Judge::stop`]
+    /// has ended the verification.
     ///
-    /// `bytes` may be truncated to one byte more than the size limit.
+    /// If the file is larger than the size limit, `bytes` may end one byte after the limit. The verdict is the same.
     #[must_use]
     pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
         let path = Path::new(name);
@@ -82,8 +83,8 @@ impl<G: Game> Judge<G> {
         }
     }
 
-    /// Stops the verification of all files, including later ones, before their next tick. They get no verdict, unless
-    /// they cannot be opened.
+    /// Stops the verification of all files before their next tick. This includes files that are passed later. A stopped
+    /// file gets no verdict. A file that cannot be opened still gets one.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
@@ -94,8 +95,9 @@ impl<G: Game> Judge<G> {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
-    /// Hash of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
-    /// rules, the limits and versions. It names the entries of `verify --cache`.
+    /// Hash of everything that the verdict on a file depends on, as 64 hexadecimal digits. `blake3` is the BLAKE3
+    /// digest of the file. The hash also covers the rules, the limits and versions. `verify --cache` names its entries
+    /// by it.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

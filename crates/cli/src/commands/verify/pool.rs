@@ -6,32 +6,34 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Maximum number of started tasks whose results are not yet shown: with [`Order::Tasks`], results wait in memory.
+/// Maximum number of started tasks whose results are not yet shown. With [`Order::Tasks`], these results wait in
+/// memory.
 const AHEAD_MAX: u64 = 1024;
 
 /// Longest wait for a result before [`Sink::pause`] is called.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// Stack size of a thread in bytes: as usual for a main thread, which a game may rely on.
+/// Stack size of a thread in bytes. This is the usual size for a main thread, which a game may rely on.
 const STACK_BYTES: usize = 8 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// A long task delays the results of later ones.
+    /// Results are shown in the order of the tasks. A long task delays the results of later tasks.
     Tasks,
     Completion,
 }
 
 pub(super) trait Sink<R> {
-    /// An error that ends the run.
+    /// Type of the errors that end the run.
     type Error;
 
     fn result(&mut self, result: R) -> Result<(), Self::Error>;
 
-    /// Called repeatedly, also while no result arrives. [`Pause::End`] ends the run.
+    /// Called repeatedly, also while no result arrives. If it returns [`Pause::End`], the run ends.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
-    /// Called after [`Pause::End`] and all held results. Tasks may still be running.
+    /// Called when [`Pause::End`] has ended the run, after the results that were still held. Tasks may still be
+    /// running.
     fn end(&mut self);
 }
 
@@ -41,10 +43,11 @@ pub(super) enum Pause {
     End,
 }
 
-/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses threads,
-/// there are fewer. Without any, the tasks run on this thread and [`Sink::pause`] is not called.
+/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses some
+/// threads, fewer are used. If it refuses all, the tasks run on this thread, and [`Sink::pause`] is not called.
 ///
-/// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set for running ones.
+/// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set so that running tasks
+/// end.
 pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     jobs: usize,
     order: Order,
@@ -70,7 +73,7 @@ pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
             let builder = thread::Builder::new().stack_size(STACK_BYTES);
             match builder.spawn_scoped(scope, move || worker(results)) {
                 Ok(handle) => workers.push(handle),
-                // Continue with fewer.
+                // Continues with fewer threads.
                 Err(_) => break,
             }
         }
@@ -91,7 +94,7 @@ pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     })
 }
 
-/// Waits for the next task; `None` if there are no more, or after `stop`.
+/// Waits for the next task. Returns `None` if there are no more, or after `stop`.
 fn next<T>(tasks: &Mutex<mpsc::Receiver<T>>, stop: &AtomicBool) -> Option<T> {
     let task = tasks.lock().ok()?.recv().ok()?;
     (!stop.load(Ordering::Relaxed)).then_some(task)
@@ -130,7 +133,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
                 Ok((number, result)) => {
                     self.waiting.insert(number, result);
                 }
-                // A worker ends early only because of a bug: its result would never arrive.
+                // A worker ends early only because of a bug. The result of its task would never arrive.
                 Err(_) if !is_begun && is_any_gone() => return Ok(Pause::Continue),
                 Err(_) => {}
             }
@@ -176,7 +179,7 @@ mod tests {
     #[derive(Default)]
     struct Shown {
         numbers: Vec<u64>,
-        /// Number of results after which the next one fails.
+        /// Number of accepted results. The next result fails.
         most: Option<usize>,
         /// Number of results after which the run is to end.
         end_at: Option<usize>,
@@ -297,7 +300,7 @@ mod tests {
         };
         let mut shown = EndWhenHeld(Shown::default(), &done);
         run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
-        // A task counts itself as done before it sends its result.
+        // A task counts itself as done before it sends its result, so a few results may be missing.
         assert!(
             shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
             "{}",

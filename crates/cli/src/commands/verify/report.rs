@@ -20,7 +20,7 @@ pub(super) struct Report {
     pub(super) verdict: String,
     pub(super) ticks: u64,
     hash: Option<String>,
-    /// Bytes read from the file: at most one more than the limit.
+    /// Number of bytes read from the file. At most one more than the limit.
     bytes: u64,
     /// Further fields of the JSON line, which depend on the verdict.
     details: Map<String, Value>,
@@ -34,7 +34,8 @@ pub(super) struct Digests {
 }
 
 impl Digests {
-    /// A file that is damaged, has another format version or exceeds a limit has no digest of its game.
+    /// The digests of a file. A file that is damaged, has another format version or exceeds a limit has no digest of
+    /// its game.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
         Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
     }
@@ -44,7 +45,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file requires. In an unknown format, only `format` is known.
+/// The versions that a file requires. If the format is unknown, only `format` is known.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
@@ -54,7 +55,8 @@ pub(super) struct Needs {
 }
 
 impl Report {
-    /// `claims` are those of the trailer. `needs` are the versions that an unverifiable file requires.
+    /// `claims` are those of the trailer. `needs` are the versions that a file requires if this program cannot verify
+    /// it.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
         let mut text = verdict.to_string();
         if verdict.is_match() && !claims.is_empty() {
@@ -87,7 +89,7 @@ impl Report {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether other runs give this report. A panic may be caused by the machine, or be fixed later.
+    /// Whether other runs give the same report. A panic may be caused by the machine, or be fixed later.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }

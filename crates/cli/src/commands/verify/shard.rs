@@ -4,11 +4,11 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// One part of `count`, numbered from 1.
+/// One of `count` parts, numbered from 1.
 ///
-/// The part of a file depends only on a hash of its path below the argument. Processes that list a changing folder at
-/// different times take no file twice and skip no file that all of them find. A file keeps its part when others are
-/// added. The parts differ in size: for about 1000 files each, by a standard deviation of about 30.
+/// The part of a file depends only on a hash of its path below the argument. Processes may list a changing folder at
+/// different times. They still take no file twice, and skip no file that all of them find. A file keeps its part when
+/// other files are added. The parts differ in size: with about 1000 files per part, the standard deviation is about 30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
     index: u32,
@@ -23,8 +23,8 @@ impl Shard {
     }
 }
 
-/// Part of a path, from 0: the first eight bytes of its BLAKE3 hash, little-endian, modulo `count`. Components are
-/// joined by `/` on every system.
+/// Number of the part of a path, from 0: the first eight bytes of the path's BLAKE3 hash, little-endian, modulo
+/// `count`. Components are joined by `/` on every system.
 fn part(below: &Path, count: u32) -> u64 {
     let mut hasher = blake3::Hasher::new();
     for (position, component) in below.components().enumerate() {
@@ -78,7 +78,7 @@ mod tests {
                 assert_eq!(takers.len(), 1, "{path} of {count}");
                 files[takers[0].index as usize - 1] += 1;
             }
-            // The fair number of files, within ten standard deviations.
+            // Each part has its fair number of files, within ten standard deviations.
             let (fair, spread) = (2000 / count, 10 * (2000 / count).isqrt().max(1));
             let parts = &files[..count as usize];
             assert!(parts.iter().all(|files| files.abs_diff(fair) <= spread), "{count}: {parts:?}");

@@ -13,7 +13,7 @@ use crate::signature::{AllowedKeys, Check, GameDigest, path_beside};
 
 pub(super) struct Signers {
     keys: AllowedKeys,
-    /// Names that have to sign each file.
+    /// Number of names that have to sign each file.
     required: usize,
 }
 
@@ -43,11 +43,11 @@ enum State {
     Malformed,
 }
 
-/// Maximum size of the file of public keys in bytes: enough for 100 000 keys.
+/// Maximum size of the file of public keys in bytes. Enough for 100 000 keys.
 const KEYS_BYTES_MAX: u64 = 16 << 20;
 
 impl Signers {
-    /// Fails for a file with fewer than `required` names.
+    /// Reads the public keys. Fails for a file with fewer than `required` names.
     pub(super) fn read(path: &Path, required: usize) -> Result<Self, CommandError> {
         let text = sign::read_text(path, KEYS_BYTES_MAX)?;
         let keys: AllowedKeys = text.parse().map_err(CommandError::line(path))?;

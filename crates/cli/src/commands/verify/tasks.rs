@@ -10,7 +10,7 @@ use crate::walk::Walk;
 /// The argument that stands for the standard input.
 pub(super) const INPUT: &str = "-";
 
-/// Files given by the arguments and errors in finding them, in order.
+/// Files given by the arguments, and errors in finding files, in order.
 pub(super) struct Tasks<'a> {
     arguments: std::slice::Iter<'a, PathBuf>,
     shard: Shard,
@@ -21,7 +21,7 @@ pub(super) struct Tasks<'a> {
 struct FolderTasks<'a> {
     path: &'a Path,
     walk: Walk,
-    /// Whether any file was found, also of other parts.
+    /// Whether any file was found, also one of another part.
     is_any: bool,
 }
 
@@ -30,7 +30,7 @@ impl<'a> Tasks<'a> {
         Tasks { arguments: arguments.iter(), shard, folder: None, is_input_taken: false }
     }
 
-    /// A file that is named directly may have any extension.
+    /// Opens an argument. A file that is named directly may have any extension.
     fn open(&mut self, path: &'a Path) -> Option<Result<PathBuf, CommandError>> {
         if path.as_os_str() == INPUT {
             let again = std::mem::replace(&mut self.is_input_taken, true);

@@ -10,13 +10,13 @@ use super::report::Report;
 pub(super) struct Totals {
     pub(super) files: u64,
     pub(super) matches: u64,
-    /// Numbers of files that do not match, by verdict.
+    /// Number of files for each verdict except a match.
     others: BTreeMap<String, u64>,
-    /// Files without a verdict because of `--max-seconds`.
+    /// Number of files without a verdict because of `--max-seconds`.
     undecided: u64,
     unsigned: u64,
     cached: u64,
-    /// Ticks of undecided files and of reports that were not cached.
+    /// Number of ticks of undecided files and of reports that were not cached.
     ticks: u64,
     pub(super) elapsed: Duration,
 }
@@ -28,7 +28,7 @@ impl Totals {
         self.ticks = self.ticks.saturating_add(ticks);
     }
 
-    /// The file is also counted by its verdict.
+    /// Counts a file whose signatures are not valid. The file is also counted by its verdict.
     pub(super) fn add_unsigned(&mut self) {
         self.unsigned += 1;
     }

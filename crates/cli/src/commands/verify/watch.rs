@@ -16,7 +16,7 @@ const NAMED_AFTER: u64 = 5;
 /// Longest interval of reports, in seconds.
 const NAMED_AGAIN_MAX: u64 = 60;
 
-/// Value of [`Work::ticks`] before the file is opened.
+/// Value of [`Work::ticks`] until the game is set up.
 const UNKNOWN: u64 = u64::MAX;
 
 #[derive(Debug, Default)]
@@ -31,13 +31,13 @@ pub(super) struct Work {
     clock: Clock,
     time_max: Option<Duration>,
     tick: AtomicU64,
-    /// Ticks in the file, or [`UNKNOWN`].
+    /// Number of ticks in the file, or [`UNKNOWN`].
     ticks: AtomicU64,
-    /// Elapsed seconds of the next report.
+    /// Time of the next report, in seconds since the file was begun.
     named_at: AtomicU64,
 }
 
-/// Dropping it removes the file from the [`Watch`].
+/// A file at work. Dropping this value removes the file from the [`Watch`].
 pub(super) struct AtWork<'a> {
     watch: &'a Watch,
     number: u64,
@@ -45,7 +45,7 @@ pub(super) struct AtWork<'a> {
 }
 
 impl Watch {
-    /// `time_max` is the longest time that the file may take.
+    /// Adds a file. `time_max` is the longest time that the file may take.
     pub(super) fn begin(&self, path: PathBuf, time_max: Option<Duration>) -> AtWork<'_> {
         let number = self.begun.fetch_add(1, Ordering::Relaxed);
         let work = Arc::new(Work {

@@ -11,7 +11,8 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// Size and name of the largest unit up to the absolute value, or else the smallest. An energy of 0 is in J.
+    /// Size and name of the largest unit that is not above the absolute value. If there is none, those of the smallest
+    /// unit. An energy of 0 is in J.
     pub(super) fn fitting(self, value: f64) -> (f64, &'static str) {
         let units: &[(f64, &str)] = match self {
             Unit::Energy => &[(0.001, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ"), (1e9, "GJ")],
@@ -35,7 +36,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis with 1 to `steps_max` steps. A range of one value is extended to 0, and the range of 0 alone to 0 to 1.
+    /// An axis with 1 to `steps_max` steps. If `low` equals `high`, the range is extended to 0; if both are 0, to 0 to
+    /// 1.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
@@ -55,7 +57,7 @@ impl Axis {
         let powers = power_min..=30;
         let rounds = powers.flat_map(|power| [1, 2, 5].map(|digit| (digit, power)));
         let mut axes = rounds.map(|(digit, power)| {
-            // Parsing gives the nearest float, unlike a product of powers of ten.
+            // Parsing gives the nearest float. A product of powers of ten could differ from it.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
             // The casts saturate if the step is far too small.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);

@@ -232,7 +232,7 @@ mod tests {
             height: Some(TOP + BOTTOM + 136),
         };
         let svg = chart.svg();
-        // x goes from 72 to 472 for ticks 0 to 4; y from 52 for value 10 to 152 for -10.
+        // x goes from 72 at tick 0 to 472 at tick 4. y goes from 52 at value 10 to 152 at value -10.
         assert!(
             svg.contains("points=\"72.00,102.00 172.00,77.00 272.00,52.00 372.00,152.00 472.00,89.50\""),
             "{svg}"

@@ -1,6 +1,6 @@
 //! [`Curve`]: values over ticks, reduced to the number of points that a plot can show.
 
-/// Maximum number of columns of consecutive ticks.
+/// Maximum number of columns. A column is a group of consecutive ticks.
 const COLUMNS: u64 = 1000;
 
 /// Values over ticks. Each column keeps its first, lowest, highest and last value.

@@ -23,7 +23,7 @@ use axis::Unit;
 use chart::{Chart, Panel};
 use curve::Curve;
 
-/// Colours of curves. The colours of the energy panel can be told apart with red-green colour blindness.
+/// Colours of curves. Those of the energy panel can be told apart with red-green colour blindness.
 const BLUE: &str = "#1f5f9e";
 const ORANGE: &str = "#d95f0e";
 const INK: &str = "#333333";
@@ -48,7 +48,7 @@ pub(super) fn write<G: Game>(
             curve.add(tick, value);
         }
     };
-    // Only differences of potential energy matter: its lowest value is drawn as 0.
+    // Only differences of potential energy matter, so its lowest value is drawn as 0.
     if let [potential, _, total] = &mut panels[0].curves[..] {
         let lowest = potential.lowest();
         [potential, total].into_iter().for_each(|curve| curve.shift(-lowest));
@@ -64,7 +64,7 @@ pub(super) fn write<G: Game>(
     Output::write(arguments, console, |output| output.line(document.trim_end()))
 }
 
-/// The panel of joints comes last, to be removed for worlds without joints.
+/// The panels without their values. The panel of joints comes last, because it is removed for worlds without joints.
 fn panels(first: u64, last: u64) -> Vec<Panel> {
     let curve = |name, colour| Curve::new(name, colour, first, last);
     let panel = |title, unit, curves| Panel { title, unit, curves };
@@ -81,7 +81,7 @@ fn panels(first: u64, last: u64) -> Vec<Panel> {
     ]
 }
 
-/// Values of all curves, in their order.
+/// Values of all curves, in the order of the panels and their curves.
 fn values(world: &World) -> [f64; 7] {
     let Measures { kinetic, potential, overlap, gap } = Measures::of(world);
     let figures = figures::of(world);
