@@ -112,11 +112,11 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// A save packs 52 bytes for each body into the memory of the replaced snapshot. It allocates lists of digests, half a
-/// byte per body, shape and joint.
+/// A save packs 52 bytes for each body into the memory of the replaced snapshot. The save allocates only lists of
+/// digests, half a byte per body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {
-    // At rest; nearly all asleep; hinges.
+    // The scenes contain bodies at rest, bodies that are nearly all asleep, and hinges.
     for (name, warm_up) in [("large_pyramid", 60), ("smash", 20), ("joint_grid", 60)] {
         let mut world = world_of(name);
         (0..warm_up).for_each(|_| world.step());

@@ -43,7 +43,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Expects the hashes of the file from all variants.
+/// Expects that all variants end in the hashes of the file. `choose` selects a variant of a world.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -84,14 +84,14 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// The test of the backends runs on one thread.
+/// The test of the backends runs on one thread. This test runs on several.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
-/// In a game the number of threads changes as well: a world uses threads in ticks that they make shorter.
+/// In a game the number of threads changes too: a world uses threads only in ticks that become shorter with threads.
 #[test]
 #[cfg(feature = "parallel")]
 fn the_number_of_threads_may_change_between_ticks() {

@@ -11,7 +11,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// 1.4 m high, centred at the origin.
+/// A capsule 1.4 m high, centred at the origin.
 fn pill() -> Mover {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     Mover::new(pill).expect("valid")
@@ -66,7 +66,7 @@ fn the_character_of_the_scene_enters_nothing() {
     }
     assert_eq!(game.refused(), 0);
     assert!(least > fx!(0.00005), "{least}");
-    // The left wall was reached, and the foot of the steep slope, at 20 m, passed by a jump.
+    // The character has reached the left wall, and has jumped past the foot of the steep slope at 20 m.
     assert!((way.0 - fx!(-9.7)).abs() < fx!(0.001), "{way:?}");
     assert!(way.1 > fx!(19.7) && way.1 < fx!(20.6), "{way:?}");
     assert!(trace[595].y < trace[560].y - fx!(0.1), "expected the character to slide down: {:?}", trace[595]);
@@ -115,11 +115,11 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // 6 m along the slope, except that the round foot cuts the corner at the bottom.
+            // The character has walked 6 m along the slope, except that the round foot cuts the corner at the bottom.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");
-            // Stands without sliding, and walks down without leaving the ground.
+            // The character stands without sliding, and walks down without leaving the ground.
             let still = walk(&world, &mover, end, fx!(0), 120)[119];
             assert!(still.position.distance(end.position) < fx!(0.0005), "{degrees}: {still:?} {end:?}");
             let down = walk(&world, &mover, still, fx!(-3), 120);
@@ -133,7 +133,7 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
                 state.velocity.y -= fx!(1 / 6);
                 state = world.move_character(&mover, &state, QueryFilter::default()).state;
             }
-            // y'' = g sin².
+            // The character slides without friction, so that `y'' = g sin²`.
             let sin = Fx::from_num(angle.sin());
             let expected = fx_mul(fx!(5), fx_mul(sin, sin));
             let fallen = middle.y - state.position.y;
@@ -163,7 +163,7 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // A box must leave a step before it can descend.
+            // A box leaves a step before it descends, so that it is off the ground in some ticks.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");
@@ -282,7 +282,7 @@ fn random_shape(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// A shape that moves into a character pushes it out.
+/// A shape that moves into a character pushes the character out.
 #[test]
 fn a_lift_that_comes_up_takes_the_character_along() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);

@@ -109,7 +109,7 @@ fn ten_thousand_bodies_come_and_go() {
     assert!(churn.gone.len() > 9000 && churn.joints.len() > 500, "{} joints", churn.joints.len());
 }
 
-/// Equal changes keep both worlds equal.
+/// Makes equal changes to both worlds, and expects that they stay equal.
 fn replay_on_twin(churn: &mut Churn, twin: &mut World) {
     for _ in 0..500 {
         let mut other = Churn {

@@ -15,7 +15,7 @@ struct Trace {
     events: Vec<Events>,
 }
 
-/// `perturb` runs before each tick and must not affect results.
+/// Hashes and events of a run. `perturb` runs before each tick and must not affect results.
 fn trace(scene: &Scene, ticks: u64, mut perturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
     let mut game =
         Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
@@ -46,7 +46,7 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
 /// Largest number of compared ticks in the long run.
 const TICKS_MAX: u64 = 300;
 
-/// The trace of an undisturbed run up to the golden, shared by the tests.
+/// The trace of an undisturbed run up to the tick of the golden. The tests share it.
 fn undisturbed(scene: &Scene) -> &'static Trace {
     static TRACES: LazyLock<Vec<OnceLock<Trace>>> =
         LazyLock::new(|| ALL.iter().map(|_| OnceLock::new()).collect());
@@ -54,8 +54,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene, with the ticks of its golden, but at most [`TICKS_MAX`] in the long run, and otherwise
-/// at most 150, or 30 for a large scene.
+/// Calls `hold` for every scene with a number of ticks and the undisturbed trace. The number is that of the scene's
+/// golden, limited to [`TICKS_MAX`] in the long run. Otherwise the limit is 150, or 30 for a large scene.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });
@@ -76,7 +76,8 @@ fn two_runs_agree() {
     });
 }
 
-/// At every tick, the world is decoded from its bytes; at the sampled size, at every fifth tick of a large scene.
+/// Before each tick, the world is decoded from its bytes. In the short run, this happens before every fifth tick of a
+/// large scene.
 #[test]
 fn restoring_from_bytes_continues_bit_identically() {
     each_scene(|scene, ticks, reference| {
@@ -137,7 +138,7 @@ fn the_broad_phase_makes_no_difference() {
     });
 }
 
-/// A committed hash catches an error that two runs make alike.
+/// A committed hash catches an error that affects both of two compared runs.
 #[test]
 fn every_scene_ends_in_its_golden() {
     let goldens = goldens();

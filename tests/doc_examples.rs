@@ -19,7 +19,7 @@ const WITHOUT: &[(&str, &str, &str)] = &[
     ("crates/cli", "RandomError", "opaque: printed when the system has no random numbers"),
 ];
 
-/// Declares a public type whose name is on a line of its own.
+/// Start of a macro call that declares a public type. The name of the type follows on a line of its own.
 const TYPE_MACRO: &str = "define_handle! {";
 
 #[derive(Default)]
@@ -108,7 +108,7 @@ fn every_public_type_is_shown() {
     let all: Vec<_> = FOLDERS.iter().flat_map(|folder| files(folder, &["rs"])).collect();
     let modules = modules(&all);
     let count: usize = modules.values().map(|module| module.types.len()).sum();
-    // Otherwise declarations are not recognised.
+    // A smaller count means that declarations are not recognised.
     assert!(count > 200, "only {count} public types");
     let missing = not_shown(&modules);
     let excused: Vec<_> = WITHOUT.iter().map(|&(module, name, _)| (module, name)).collect();

@@ -45,7 +45,7 @@ fn every_layer_has_its_primitives() {
     let found = primitives(&scene(), Layers::ALL);
     let expected = [
         (Style::Fixed, 1),
-        // A box, and a circle with a radius.
+        // A box has one outline. A circle has an outline and a radius.
         (Style::Dynamic, 3),
         (Style::Kinematic, 1),
         (Style::FatBox, 4),
@@ -166,7 +166,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     world.despawn(boxes[2]).unwrap();
     assert_eq!(primitives(&world, layers), expected, "the same points, forces and colours");
 
-    // The next ticks equal those without cached contacts.
+    // The next ticks equal those of a copy without cached contacts.
     let mut restored = world.clone();
     restored.restore(&world.save());
     (0..30).for_each(|_| {
@@ -176,7 +176,8 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     });
 }
 
-/// A ball joined to a fixed body 3 m away, inside that body's sensor, and the figures of the legend.
+/// Returns a world and the figures of its legend. A ball is joined to a fixed body 3 m away, and lies inside that
+/// body's sensor.
 #[expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();
@@ -275,11 +276,12 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    // Four bodies with shapes, and the two dynamic ones again, as islands.
+    // Four bodies have shapes. The two dynamic ones appear again, as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
     // The bodies, 12 styles, and the scale bar.
     assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
-    // The ids of bodies other than the ground, whose centre is below the picture, and the error of the joint.
+    // The labels are the ids of four bodies and the error of the joint. The ground has no label, because its centre is
+    // below the picture.
     assert_eq!(picture.matches(" dy=\"-3\">").count(), 4 + 1);
     assert!(picture.len() < 8000, "{} bytes", picture.len());
 }

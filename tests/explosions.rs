@@ -13,7 +13,7 @@ fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
-/// 2 kg with a radius of gyration of 1 m.
+/// Adds a body of 2 kg with a radius of gyration of 1 m.
 fn spawn(world: &mut World, shape: impl Into<Geometry>, x: Fx, y: Fx) -> BodyId {
     let mass = MassSource::Given { mass: fx!(2), centre: Vec2::ZERO, gyration: fx!(1) };
     world.spawn(&BodyDef::dynamic().position((x, y)).mass(mass), &[ShapeDef::new(shape)]).expect("valid")
@@ -31,7 +31,7 @@ fn near(a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
 fn a_ball_is_pushed_by_its_diameter_and_its_distance() {
     let explosion = Explosion { radius: fx!(3), falloff: fx!(2), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     let ball = Geometry::circle(fx!(0.5)).expect("valid");
-    // The surface is half a metre nearer than the centre. 10 N s / m * 1 m / 2 kg.
+    // The surface is half a metre nearer than the centre. Without falloff, the speed is 10 N s / m * 1 m / 2 kg.
     for (distance, speed) in [
         (fx!(1), fx!(5)),
         (fx!(3.5), fx!(5)),
@@ -75,7 +75,7 @@ fn the_push_is_as_wide_as_the_shape_and_meets_the_nearest_point() {
         fx!(2),
     );
     world.explode(&Explosion { radius: fx!(2.5), ..Explosion::new(Vec2::ZERO, fx!(10)) }).expect("valid");
-    // 2 m high, half a metre below the centre: w = r x P / (m k²) = -(-0.5) * 20 / 2.
+    // The plank is 2 m high. The impulse acts half a metre below its centre: w = r x P / (m k²) = -(-0.5) * 20 / 2.
     assert!(near(velocity(&world, high), at(fx!(10), fx!(0))), "{:?}", velocity(&world, high));
     let spin = world.body(high).expect("there").angular_velocity();
     assert!((spin - fx!(5)).abs() < fx!(0.00001), "{spin}");

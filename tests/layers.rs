@@ -2,8 +2,8 @@
 //! tests.
 //!
 //! Inside a module with folders, each folder uses only the folders listed for it, and files of different folders do not
-//! depend on each other in a circle. These tests leave out unit tests, and count a re-export as a path to the defining
-//! file. Calls of methods are not found.
+//! depend on each other in a circle. The tests of folders leave out unit tests. They count a re-export as a path to the
+//! file that defines the item. Calls of methods are not found.
 //!
 //! ```text
 //!             peer
@@ -96,7 +96,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "world",
         &[
-            // Sleeping contacts are stored in their packed form, and the world stores caches and digest.
+            // The files outside of folders use the packed form of sleeping contacts, the caches and the digest.
             (".", &["cache", "snapshot"]),
             ("cache", &["."]),
             ("islands", &[".", "cache"]),
@@ -109,7 +109,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     ),
 ];
 
-/// Items of the crate root for every module.
+/// Items of the crate root that every module may use.
 const ROOT: &[&str] = &["fx", "SEMANTICS"];
 
 #[test]
@@ -154,7 +154,7 @@ fn files_of_different_folders_form_no_circle() {
     assert!(wrong.is_empty(), "files that depend on each other:\n{}", wrong.join("\n"));
 }
 
-/// Canary of the folder rules.
+/// A canary of the folder rules.
 #[test]
 fn wrong_folders_and_circles_are_found() {
     let rules: Rules = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
@@ -184,12 +184,12 @@ fn wrong_folders_and_circles_are_found() {
         assert!(uses > 0, "{used}");
     }
     assert_eq!(with("mod tests { use crate::m::Shown; }", "pub struct Shown;"), (0, 0), "a test");
-    // A circle of allowed paths.
+    // The allowed paths form a circle.
     let circle = [root, a, b, ("src/m/b/y.rs", "use crate::m::c::Base; pub struct Shown;")];
     let there = ("src/m/c.rs", "use super::b::Shown; pub struct Base;");
     let there_and_back: Vec<_> = circle.iter().copied().chain([there]).collect();
     assert_eq!(wrong(&there_and_back), (0, 1));
-    // A re-export that its own module uses.
+    // The module itself uses its re-export.
     let own = [
         ("src/m/mod.rs", "mod b; pub struct Base(b::Holder);"),
         ("src/m/b/mod.rs", "mod y; pub use y::Shown; pub struct Holder(Shown);"),
@@ -211,7 +211,7 @@ fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     place.get(1).filter(|name| is_folder(name)).map_or(".", String::as_str)
 }
 
-/// Paths to folders that must not be used.
+/// Paths to folders that the rules do not allow.
 fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     let mut wrong = Vec::new();
     for place in sources.modules().filter(|place| place.first().is_some_and(|name| name == module)) {
@@ -233,7 +233,7 @@ fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     wrong
 }
 
-/// Circles that are not within one folder.
+/// Circles of files that are not all in one folder.
 fn circles(sources: &Crate, module: &str) -> Vec<String> {
     let circles = sources
         .circles()
@@ -248,7 +248,7 @@ fn circles(sources: &Crate, module: &str) -> Vec<String> {
     circles.filter(spans).map(named).collect()
 }
 
-/// Canary of the layers: every form of a path.
+/// A canary of the layers, with every form of a path.
 #[test]
 fn wrong_directions_are_found() {
     let found = |place: &[&str], code: &str| {

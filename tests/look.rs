@@ -204,7 +204,7 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
     assert_eq!(world.broad_phase_boxes(), []);
 }
 
-/// Two squares on a slab, welded to each other, and a distant square with a filter joint to the upper one.
+/// Two squares lie on a slab and are welded to each other. A filter joint connects a distant square to the upper one.
 #[test]
 fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
     let mut world = empty();

@@ -7,7 +7,7 @@ use source::{Source, Token, files, tokens};
 /// A longer file has more than one subject.
 const LINES_MAX: usize = 400;
 
-/// Not allowed in the library, and why.
+/// Words that the library may not use, and why.
 const BANNED: &[(&str, &str)] = &[
     ("f32", "floating point differs between machines"),
     ("f64", "floating point differs between machines"),
@@ -26,13 +26,13 @@ const BANNED: &[(&str, &str)] = &[
 ];
 
 const FLOATS: &[&str] = &["f32", "f64"];
-/// Drawing is not simulation, and a serializer must implement methods for floats.
+/// Folders that may use floats: drawing is not simulation, and a serializer must implement methods for floats.
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
-/// Measures whether ticks take less time on one thread or on all.
+/// File that may read the clock, to measure whether ticks take less time on one thread or on all.
 const ALLOWED_CLOCK: &str = "src/threads/team.rs";
 
-/// SIMD instructions, prefetches, and data shared between threads.
+/// Files that may use `unsafe`: for SIMD instructions, prefetches, and data shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/x86.rs",
     "src/simd/x86/avx2.rs",
@@ -46,14 +46,14 @@ const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/shared.rs",
 ];
 
-/// Gives the reason for an `unsafe`.
+/// Comment that gives the reason for an `unsafe`.
 const REASON: &str = "// SAFETY: ";
-/// Lines from this comment down to the `unsafe`.
+/// Largest number of lines from this comment down to the `unsafe`.
 const REASON_ABOVE: usize = 3;
 
 const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/simd/", "src/solver/", "src/world/"];
 
-/// Top-level folders of paths of a single machine.
+/// Top-level folders in paths that exist on one machine only.
 const MACHINE_FOLDERS: &[&str] = &["home", "root", "Users", "tmp", "mnt", "opt", "srv", "var", "work"];
 
 fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String> {
@@ -95,7 +95,7 @@ fn may_be_unsafe(file: &Source) -> bool {
     ALLOWED_UNSAFE.contains(&file.path.as_str())
 }
 
-/// An `unsafe fn` needs no reason: its callers give it.
+/// Uses of `unsafe` without a reason. An `unsafe fn` needs no reason, because its callers give it.
 fn unexplained_unsafe(file: &Source) -> Vec<String> {
     let lines: Vec<_> = file.text.lines().collect();
     let explained = |line: usize| {
@@ -107,7 +107,7 @@ fn unexplained_unsafe(file: &Source) -> Vec<String> {
     wrong.map(|pair| format!("{}: unsafe without a reason", pair[0].line)).collect()
 }
 
-/// The width of `usize` and `isize` depends on the machine.
+/// State with a `usize` or `isize`, whose width depends on the machine.
 fn machine_width_in_state(file: &Source) -> Vec<String> {
     let tokens = tokens(&file.text);
     let mut wrong = Vec::new();

@@ -9,21 +9,21 @@ use crate::measure::{EndState, Keeping, Times, end_state, keeping, run};
 use crate::script::Script;
 use crate::stats::{geometric_mean, median, quartiles};
 
-/// Steps of the warm-up run of each engine.
+/// Number of steps of the warm-up run of each engine.
 const WARM_UP: u64 = 20;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Runs of each engine.
+    /// Number of runs of each engine.
     pub rounds: usize,
-    /// Threads of each engine.
+    /// Number of threads of each engine.
     pub threads: usize,
-    /// Largest number of steps; `None` for the whole scene.
+    /// Largest number of steps, or `None` for the whole scene.
     pub steps: Option<u64>,
 }
 
 impl Plan {
-    /// Runs of a scene, warm-ups included, for the progress bar.
+    /// Number of runs of a scene, including warm-ups, for the progress bar.
     pub fn runs(&self) -> u64 {
         ((self.rounds + 1) * Kind::ALL.len()) as u64
     }
@@ -37,17 +37,17 @@ pub struct Each<T> {
     pub rapier: T,
 }
 
-/// Results of a scene: one line of JSON. Ratios are lockstep2d's time over the other engine's.
+/// Results of a scene, printed as one line of JSON. A ratio is lockstep2d's time divided by the other engine's time.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneResult {
     pub scene: String,
-    /// Simulated steps, of which the first is not timed.
+    /// Number of simulated steps. The first one is not timed.
     pub steps: usize,
-    /// Runs of each engine.
+    /// Number of runs of each engine.
     pub rounds: usize,
-    /// Threads of each engine.
+    /// Number of threads of each engine.
     pub threads: usize,
-    /// Time per step in ms, median of the rounds: CPU time with one thread, wall-clock time with more.
+    /// Time per step in ms, median of the rounds. This is CPU time with one thread, and wall-clock time with more.
     pub ms: f64,
     /// Time per step of Box2D, measured like `ms`.
     pub box2d_ms: f64,
@@ -63,13 +63,13 @@ pub struct SceneResult {
     pub vs_rapier_quartiles: Option<[f64; 2]>,
     /// Wall-clock time per step in ms.
     pub wall_ms: Each<Option<f64>>,
-    /// CPU time of the commands between steps, in ms per step, which no other value includes.
+    /// CPU time in ms per step of the commands between steps. No other value includes it.
     pub commands_ms: Each<Option<f64>>,
     /// State after the last step.
     pub end: Each<Option<EndState>>,
     /// Cost of saving, restoring and hashing a whole world.
     pub keeping: Each<Option<Keeping>>,
-    /// Reasons why engines are missing.
+    /// Reasons why the results of an engine are missing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<String>,
 }
@@ -77,12 +77,12 @@ pub struct SceneResult {
 /// Last line of JSON.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
-    /// Always true: distinguishes the summary from a scene.
+    /// Always true. Distinguishes the summary from the line of a scene.
     pub summary: bool,
     pub scenes: usize,
     /// Geometric mean of the scenes' ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,
-    /// Geometric mean of the scenes' ratios to rapier2d, where it runs.
+    /// Geometric mean of the scenes' ratios to rapier2d, over the scenes that rapier2d runs.
     pub geomean_vs_rapier: Option<f64>,
     /// Largest of the scenes' ratios to Box2D.
     pub worst_vs_box2d: Option<f64>,
@@ -96,7 +96,7 @@ struct Runs {
 }
 
 impl Runs {
-    /// CPU times with one thread, wall-clock times with more.
+    /// Times that are compared: CPU times with one thread, wall-clock times with more.
     fn compared(&self, threads: usize) -> Vec<f64> {
         self.times.iter().map(|times| if threads == 1 { times.cpu } else { times.wall }).collect()
     }

@@ -62,16 +62,16 @@ pub struct BodyState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
-    /// Bodies of all kinds.
+    /// Number of bodies of all kinds.
     pub bodies: usize,
-    /// A chain counts once per link.
+    /// Number of shapes. A chain counts once per link.
     pub shapes: usize,
     pub joints: usize,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
-    /// Pairs of shapes with contact points.
+    /// Number of pairs of shapes with contact points.
     pub pairs: usize,
     /// Deepest penetration in metres in the engine's last step, or 0.
     pub deepest: f64,
@@ -92,7 +92,7 @@ impl Inventory {
         Inventory { counts: engine.counts(), mass }
     }
 
-    /// Whether the counts are equal, and the masses within 0.5 %: engines approximate rounded corners.
+    /// Whether the counts are equal, and the masses equal within 0.5 %. Engines approximate rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass
     }
@@ -102,10 +102,10 @@ impl Inventory {
 pub trait Builder {
     const NAME: &str;
 
-    /// Creates a body at a pose, under the id from lockstep2d.
+    /// Creates a body at a pose. Later commands refer to the body by the id from lockstep2d.
     fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()>;
 
-    /// Joins two bodies, of which A comes first.
+    /// Joins two bodies. The first one is body A of the joint.
     fn join(&mut self, joint: &JointDef, bodies: (BodyId, BodyId)) -> Result<()>;
 
     fn despawn(&mut self, body: BodyId) -> Result<()>;
@@ -135,7 +135,7 @@ pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
     }
 }
 
-/// Saves of a rollback frame: its start and its eight ticks.
+/// Number of saves of a rollback frame: one at its start and one after each of eight ticks.
 pub const SAVES: usize = 9;
 
 pub trait Engine {
@@ -152,26 +152,27 @@ pub trait Engine {
 
     fn contacts(&self) -> Contacts;
 
-    /// Largest distance between the anchors of a joint, in metres; `None` without joints.
+    /// Largest distance between the anchors of a joint, in metres. `None` without joints.
     fn joint_gap(&self) -> Option<f64>;
 
     /// Saves the world in one of [`SAVES`] slots, whose memory is reused.
     fn save(&mut self, slot: usize);
 
-    /// Bytes of the saved world as a file.
+    /// Size of the saved world as a file, in bytes.
     fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Bytes of the save in a slot that are not shared with the world. Box2D and rapier2d share none.
+    /// Number of bytes of the save in a slot that are not shared with the world. Box2D and rapier2d share none.
     fn held_bytes(&self, slot: usize) -> usize {
         self.saved_bytes(slot)
     }
 
     fn restore(&mut self, slot: usize) -> Result<()>;
 
-    /// Checksum of a tick that was just saved in a slot: the hash of the state, or else the XXH3-128 of the save.
+    /// Checksum of a tick that was just saved in a slot: the hash of the state if the engine has one, otherwise the
+    /// XXH3-128 of the save.
     fn checksum(&self, slot: usize) -> u128;
 
-    /// Hash of all state that influences later steps; `None` if the engine has none.
+    /// Hash of all state that influences later steps. `None` if the engine cannot compute one.
     fn hash(&self) -> Option<u128>;
 }
 
@@ -194,7 +195,7 @@ pub fn corners(polygon: &Polygon, offset: Vec2<Fx>) -> Vec<[f32; 2]> {
     polygon.vertices().iter().map(moved).collect()
 }
 
-/// Handles of another engine, by the slots of lockstep2d's bodies.
+/// Handles of another engine's bodies, indexed by the slots of lockstep2d's bodies.
 pub struct Slots<T>(Vec<Option<T>>);
 
 impl<T: Copy> Slots<T> {

@@ -1,5 +1,5 @@
-//! Measures the exponent `p` of the step time `n^p` with `n` bodies, in worlds with a similar number of contacts per
-//! body.
+//! Measures how the time of a step grows with the number of bodies `n`: as `n^p`. The worlds have a similar number of
+//! contacts per body at each size.
 
 use anyhow::{Result, anyhow};
 use indicatif::ProgressBar;
@@ -16,7 +16,7 @@ use crate::measure::run;
 use crate::script::Script;
 use crate::stats::{median, power};
 
-/// World that can be built in any size.
+/// A world that can be built in any size.
 #[derive(Clone, Copy)]
 pub struct World {
     pub name: &'static str,
@@ -35,9 +35,9 @@ pub struct Plan {
     /// Approximate numbers of bodies.
     pub sizes: Vec<u32>,
     pub steps: u64,
-    /// Steps before the timed ones.
+    /// Number of steps before the timed ones.
     pub untimed: u64,
-    /// Runs of each engine at each size.
+    /// Number of runs of each engine at each size.
     pub rounds: usize,
 }
 
@@ -54,9 +54,9 @@ pub struct Growth {
 
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
-    /// Pairs with contact points at the end.
+    /// Number of pairs with contact points at the end.
     pub contacts: usize,
     /// CPU time of a step, in ms.
     pub ms: f64,
@@ -97,7 +97,7 @@ fn config() -> Config {
     Config { sleeping: false, pair_limit: 1 << 20, ..Config::default() }
 }
 
-/// Pyramids of 55 boxes, 20 side by side on each shelf, as in `many_pyramids`.
+/// Pyramids of 55 boxes. Each shelf has 20 pyramids side by side, as in `many_pyramids`.
 fn pyramids(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let pyramids = (bodies / 55).max(1);
     let mut scene = Builder::new(config());
@@ -130,18 +130,18 @@ fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
 
 const DRUM: u32 = 484;
 
-/// A single drum. Unlike many small ones, a larger drum has a deeper pile, and so another mix of work.
+/// A single drum. A larger drum has a deeper pile and so another mix of work, unlike a larger number of small drums.
 fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     add_drum(&mut scene, Vec2::ZERO, bodies)?;
     Ok(scene.finish())
 }
 
-/// A square drum full of boxes and balls, turned by 30 degrees. Its angular velocity gives the same Froude number at
-/// any size.
+/// Adds a square drum full of boxes and balls, turned by 30 degrees. Its angular velocity gives the same Froude number
+/// at any size.
 pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
-    // The upright grid of bodies fits into the turned drum.
+    // The walls leave room for the upright grid of bodies in the turned drum.
     let apart = fx!(0.255);
     let half_grid = apart * i64::from(side) / 2;
     let half = half_grid * fx!(1.45) + fx!(0.5);

@@ -1,4 +1,4 @@
-//! Counts the instructions of a step with callgrind, independently of caches and of other load.
+//! Counts the instructions of a step with callgrind. The counts depend neither on caches nor on other load.
 
 use std::process::Command;
 
@@ -21,13 +21,13 @@ pub struct Growth {
 
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
-    /// Instructions of a step, in millions.
+    /// Number of instructions of a step, in millions.
     pub millions: f64,
 }
 
-/// The difference between a full run and one that ends before the timed steps.
+/// Counts the instructions of the timed steps: the difference between a full run and a run that ends before them.
 pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     let mut points = Vec::new();
     for &size in &plan.sizes {

@@ -138,7 +138,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// All scenes if none is named.
+/// The named scenes, or all scenes if none is named.
 fn names(some: &[String]) -> Vec<&str> {
     if some.is_empty() { script::SCENES.into() } else { some.iter().map(String::as_str).collect() }
 }

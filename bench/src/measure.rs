@@ -9,7 +9,7 @@ use crate::engine::{Engine, Kind};
 use crate::script::Script;
 use crate::stats::median;
 
-/// Times in ms per step, without the untimed first steps.
+/// Times in ms per step. The untimed first steps are left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
     /// CPU time of the calling thread.
@@ -23,19 +23,19 @@ pub struct Times {
 pub struct EndState {
     /// Height of the highest dynamic body, in metres.
     pub top: f64,
-    /// Height of the lowest dynamic body, in metres: shows falls through the floor.
+    /// Height of the lowest dynamic body, in metres. Shows whether a body falls through the floor.
     pub bottom: f64,
     /// Deepest penetration of the last step, in mm.
     pub deepest_mm: f64,
-    /// Mean speed of dynamic bodies in m/s, 0 for sleeping ones.
+    /// Mean speed of dynamic bodies in m/s. Sleeping bodies count as 0.
     pub mean_speed: f64,
     /// Largest speed of a dynamic body, in m/s.
     pub max_speed: f64,
-    /// Pairs of shapes with contact points.
+    /// Number of pairs of shapes with contact points.
     pub contacts: usize,
     /// Largest distance between the anchors of a joint, in mm.
     pub joint_gap_mm: Option<f64>,
-    /// Awake dynamic bodies.
+    /// Number of awake dynamic bodies.
     pub awake: usize,
 }
 
@@ -48,9 +48,9 @@ pub struct Keeping {
     pub restore_ms: f64,
     /// CPU time of a hash, in ms, if the engine has one.
     pub hash_ms: Option<f64>,
-    /// Bytes of the world as a file.
+    /// Size of the world as a file, in bytes.
     pub bytes: usize,
-    /// `bytes` per body that is not fixed.
+    /// `bytes` divided by the number of bodies that are not fixed.
     pub bytes_per_body: f64,
 }
 
@@ -109,7 +109,7 @@ pub fn end_state(engine: &dyn Engine) -> EndState {
     }
 }
 
-/// Medians of five repetitions.
+/// Cost of keeping the current state: medians of five repetitions.
 pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
     let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..5 {

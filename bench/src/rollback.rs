@@ -1,4 +1,4 @@
-//! Measures the cost of rollback: a save and a hash in every tick, and a restore with a resimulation.
+//! Measures the cost of rollback: a save and a hash in every tick, and a restore followed by a resimulation.
 
 use anyhow::{Result, anyhow};
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
@@ -12,14 +12,14 @@ use crate::measure::timed;
 use crate::script::{Event, Script};
 use crate::stats::median;
 
-/// Ticks of a rollback.
+/// Number of ticks of a rollback.
 const TICKS: usize = 8;
 const TIMES: usize = 5;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
     pub scene: String,
-    /// CPU time of a step in ms, mean over the ticks that are rolled back.
+    /// CPU time of a step in ms, averaged over the ticks that are rolled back.
     pub step_ms: f64,
     /// CPU time of a save, in ms.
     pub save_ms: f64,
@@ -29,11 +29,11 @@ pub struct Cost {
     pub restore_ms: f64,
     /// CPU time of a save and a hash, in percent of a step.
     pub save_and_hash_percent: f64,
-    /// CPU time of a restore and 8 ticks with saves and hashes, in units of a step.
+    /// CPU time of a restore and 8 ticks with saves and hashes, as a multiple of the time of a step.
     pub rollback_steps: f64,
-    /// Bytes of a save that are not shared with the world.
+    /// Number of bytes of a save that are not shared with the world.
     pub save_bytes: usize,
-    /// `save_bytes` per dynamic body.
+    /// `save_bytes` divided by the number of dynamic bodies.
     pub save_bytes_per_body: f64,
     /// Length of `World::to_bytes`, in bytes.
     pub file_bytes: usize,
@@ -67,7 +67,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         for (tick, events) in last.iter().enumerate() {
             execute(&mut world, events)?;
             let (stepping, ()) = timed(|| world.step());
-            // A game reuses one save per tick of the rollback window.
+            // A game has one save for each tick of the rollback window, and reuses its memory.
             let (saving, ()) = timed(|| world.save_into(&mut saves[tick]));
             let (hashing, _) = timed(|| world.state_hash());
             resimulating += stepping + saving + hashing;
@@ -77,7 +77,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         }
         rollback.push(restoring + resimulating);
     }
-    // Ticks differ: some create bodies or joints.
+    // The median is taken for each tick, because ticks differ: some create bodies or joints.
     let step_ms = steps.iter().map(|times| median(times)).sum::<f64>() / TICKS as f64;
     let [save_ms, hash_ms, restore_ms] = [&save, &hash, &restore].map(|times| median(times));
     let save_bytes = save_bytes(&world);
@@ -115,12 +115,12 @@ fn advance(world: &mut World, events: &[Event]) -> Result<()> {
     Ok(())
 }
 
-/// Bytes that are not shared with the world.
+/// Number of bytes of a save that are not shared with the world.
 fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }
 
-/// Measures worlds with bodies only, with contacts and with joints.
+/// Measures the bytes in worlds with bodies only, with contacts and with joints.
 pub fn bytes() -> Result<Bytes> {
     let few = save_bytes(&scattered(1000)?) as f64;
     let many = save_bytes(&scattered(9000)?) as f64;
@@ -138,7 +138,7 @@ pub fn bytes() -> Result<Bytes> {
     Ok(Bytes { body, contact, joint: joints / world.joint_count() as f64 })
 }
 
-/// Boxes 10 m apart, after one step.
+/// A world of boxes 10 m apart, after one step.
 fn scattered(count: u32) -> Result<World> {
     let mut scene = Builder::new(Config { gravity: Vec2::ZERO, ..Config::default() });
     let fill = |scene: &mut Builder| {
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(bytes.body, 52.0);
         // A save also has 8 bytes for each contact without points.
         assert!((88.0..90.0).contains(&bytes.contact), "{bytes:?}");
-        // A byte of flags, 4 bytes for the turns, and 4 bytes for each impulse that is not 0.
+        // A joint takes a byte of flags, 4 bytes for the turns, and 4 bytes for each impulse that is not 0.
         assert!((5.0..=13.0).contains(&bytes.joint), "{bytes:?}");
     }
 }

@@ -1,8 +1,8 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
 //! Commands refer to bodies by handles that earlier commands created. So each command is executed once, on a world that
-//! is never stepped, and stored with its outcome. The commands of the scenes in [`SCENES`] depend only on which bodies
-//! exist, so the list is valid for every engine.
+//! is never stepped, and stored with its outcome. The commands of the scenes in [`SCENES`] depend on which bodies exist
+//! and on nothing else in the world, so the list is valid for every engine.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -31,12 +31,12 @@ pub struct Script {
     pub setup: Vec<Event>,
     /// Commands before each step.
     pub ticks: Vec<Vec<Event>>,
-    /// First steps that are not timed.
+    /// Number of first steps that are not timed.
     pub untimed: usize,
 }
 
 impl Script {
-    /// Records a scene, for its full length or at most `most_steps`.
+    /// Records a scene in its full length, or `most_steps` steps of a longer one.
     pub fn of_scene(name: &str, most_steps: Option<u64>) -> Result<Self> {
         let scene = Scene::find(name).ok_or_else(|| anyhow!("no scene {name}"))?;
         let steps = most_steps.map_or(scene.ticks, |most| most.min(scene.ticks));

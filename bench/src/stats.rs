@@ -1,6 +1,6 @@
 //! Quantiles, geometric means and power-law fits.
 
-/// Quantile, interpolated linearly; NaN for an empty slice.
+/// Quantile, interpolated linearly. NaN for an empty slice.
 pub fn quantile(values: &[f64], fraction: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -10,7 +10,7 @@ pub fn quantile(values: &[f64], fraction: f64) -> f64 {
     below + (above - below) * (at - at.floor())
 }
 
-/// NaN for an empty slice.
+/// Median. NaN for an empty slice.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
@@ -20,7 +20,7 @@ pub fn quartiles(values: &[f64]) -> [f64; 2] {
     [quantile(values, 0.25), quantile(values, 0.75)]
 }
 
-/// `None` for an empty slice.
+/// Geometric mean. `None` for an empty slice.
 pub fn geometric_mean(values: &[f64]) -> Option<f64> {
     let sum: f64 = values.iter().map(|value| value.ln()).sum();
     (!values.is_empty()).then(|| (sum / values.len() as f64).exp())

@@ -1,5 +1,4 @@
-//! Tests that the engines start from equal worlds and continue from a save, and that the lines of JSON have their
-//! fields.
+//! Tests that the engines start from equal worlds and continue from a save, and that each line of JSON has its fields.
 
 use crate::compare::{self, Plan};
 use crate::engine::{Engine, Inventory, Kind};
@@ -7,7 +6,7 @@ use crate::measure::{end_state, keeping, run};
 use crate::script::{SCENES, Script};
 use indicatif::ProgressBar;
 
-/// A scene after the commands of all recorded ticks, without a step.
+/// A scene to which the commands of all recorded ticks were applied, without a step.
 fn built(kind: Kind, script: &Script) -> Box<dyn Engine> {
     let mut engine = kind.build(script, 1).unwrap();
     for event in script.ticks.iter().flatten() {
@@ -46,7 +45,7 @@ fn places_and_masses_agree_after_a_step() {
             assert!(our_inventory.is_like(&inventory), "{name}: {our_inventory:?}, {inventory:?}");
             for (a, b) in ours.bodies().iter().zip(peer.bodies()) {
                 let distance = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]);
-                // The bodies of the spinner overlap at the start.
+                // The bodies of the spinner overlap at the start, so the engines move them differently.
                 assert!(!a.dynamic || distance < 0.02 || name == "spinner", "{name}: {a:?}, {b:?}");
             }
         }

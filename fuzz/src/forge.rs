@@ -36,7 +36,7 @@ impl Forged {
     }
 }
 
-/// Corrects the checksums and the chain hash of bytes with the structure of a replay.
+/// Corrects the checksums and the chain hash of bytes that have the structure of a replay.
 pub fn repair(file: &mut Vec<u8>) {
     let length = |file: &[u8], at: usize| {
         let bytes = file.get(at..at + 4)?.first_chunk()?;

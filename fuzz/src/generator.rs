@@ -1,7 +1,7 @@
 //! Generates scenes: settings, and commands for the current state of a world.
 //!
-//! Three of four scenes are ordinary ones ([`crate::ordinary`]). In the others, values may be at or beyond their
-//! limits. Most bodies are small and close together, so that they touch.
+//! Three of four scenes are ordinary ones ([`crate::ordinary`]). In the other scenes, values may be at or beyond their
+//! limits, and most bodies are small and close together, so that they touch.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
@@ -98,7 +98,7 @@ impl Generator {
     /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
         let edge = WORLD_EXTENT_MAX - fx!(3);
-        // At the edge of the world bodies are clamped, which counts as a fault.
+        // Bodies at the edge of the world are clamped, which counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_ordinary() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
@@ -106,7 +106,7 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// The commands of the first tick. Unless the scene is ordinary, mostly a floor and a heap.
+    /// The commands of the first tick. A scene that is not ordinary mostly gets a floor and a heap.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_ordinary() {
@@ -165,7 +165,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // Mostly within reach of a kinematic body in one tick.
+                // The target is mostly within reach of a kinematic body in one tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -182,7 +182,7 @@ impl Generator {
             28 | 29 => Command::Sleep { body },
             30 if source.one_in(4) => {
                 let area = source.one_in(4).then(|| shapes::area(source));
-                // Most shapes are solid, for which an area is refused.
+                // Most shapes are solid, and the world refuses an area for them.
                 Command::SetArea { shape: self.shape(source, world), area }
             }
             30 | 31 => {
@@ -313,7 +313,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A change of a joint. The world refuses a change of bodies.
+    /// A change of a joint. The world refuses it if it changes the bodies of the joint.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);

@@ -1,4 +1,4 @@
-//! Compares hulls with their definition: an edge is a pair of points with all others to its left, or on it.
+//! Compares hulls with their definition: an edge is a pair of points with all other points to its left or on it.
 
 use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
 use lockstep2d::math::{Fx, Length, Rng, Vec2};
@@ -15,7 +15,7 @@ type Point = Vec2<Length>;
 /// Makes the hull of some points. Returns whether there is one.
 ///
 /// # Panics
-/// When the hull is wrong, depends on order or repetition of points, or a valid one is refused.
+/// When the hull is wrong or depends on order or repetition of points, or when a valid hull is refused.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     let points = points(&mut source);
@@ -60,7 +60,7 @@ fn points(source: &mut Source<'_>) -> Vec<Vec2<Fx>> {
     let way = source.below(4);
     (0..source.below(20))
         .map(|_| match way {
-            // A grid with few lines.
+            // The points are on a grid with few lines.
             0 => Vec2::new(Fx::from(source.below(4) as i32), Fx::from(source.below(4) as i32)),
             1 => source.mostly_vec(-reach, reach),
             2 => {

@@ -1,4 +1,4 @@
-//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The other has
+//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The other world has
 //! another broad phase, is reloaded from bytes, or has its caches cleared.
 
 use std::sync::Mutex;
@@ -89,7 +89,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// Runs the scene like [`run`], and flips a bit of a body of the second world in a crowd.
+/// Runs the scene like [`run`]. While many shapes touch, flips a bit of a body of the second world.
 ///
 /// # Panics
 /// When more than 12 contacts touch and the eighth body accepts the flip.

@@ -12,10 +12,10 @@ use crate::source::Source;
 /// A point in units of 2^-32 m.
 type Point = [BigInt; 2];
 
-/// Maximum error of a separation in micrometres. A face of B must be better by half a millimetre to be chosen, and
-/// outlines within another half a millimetre count as touching.
+/// Maximum error of a separation in micrometres. A face of B must be better by half a millimetre to be chosen. Outlines
+/// within another half a millimetre of each other count as touching.
 const CONTACT_ERROR: i64 = 1_001;
-/// Maximum error of a distance in micrometres: 20 nm, and 240 nm of rounding of a rotated vertex.
+/// Maximum error of a distance in micrometres: 20 nm, and 240 nm from rounding a rotated vertex.
 const DISTANCE_ERROR: i64 = 1;
 
 /// All points within `radius` of the convex hull of `points`, which are counter-clockwise.
@@ -29,7 +29,7 @@ struct Solid {
 pub enum Seen {
     /// The shapes are not valid.
     Refused,
-    /// Apart, without a contact.
+    /// The shapes are apart, without a contact.
     Apart,
     /// Close enough for a contact, but not touching.
     Near,
@@ -40,7 +40,7 @@ pub enum Seen {
 /// Puts two shapes into a world and checks their distance and contact.
 ///
 /// # Panics
-/// When one of them differs from the exact value by more than the documented error.
+/// When the distance or the contact differs from the exact value by more than the documented error.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -103,7 +103,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     for point in manifold.points().iter().filter(|_| !saturated) {
         let place = manifold.origin + point.anchor.widen();
         let place = [BigInt::from(place.x.to_bits()), BigInt::from(place.y.to_bits())];
-        // Half the separation from each surface.
+        // Half the separation: a contact point has this distance from each surface.
         let half = BigInt::from(Fx::from(point.separation).to_bits().abs() / 2);
         for solid in [&solid_a, &solid_b] {
             let allowed = integer(&solid.radius + &half) + micrometres(CONTACT_ERROR);
@@ -172,7 +172,7 @@ impl Solid {
         Solid { points, radius: radius.to_bits().into() }
     }
 
-    /// The edges: two for two points, none for one.
+    /// The edges. Two points have two edges, and a single point has none.
     fn edges(&self) -> impl Iterator<Item = (&Point, &Point)> {
         let count = self.points.len();
         (0..count)
@@ -180,7 +180,7 @@ impl Solid {
             .map(move |at| (&self.points[at], &self.points[(at + 1) % count]))
     }
 
-    /// Squared distance of a point from the hull of the points: 0 inside.
+    /// Squared distance of a point from the hull of the points, and 0 for a point inside.
     fn square_distance(&self, point: &Point) -> Exact {
         if self.points.len() > 2 && self.edges().all(|(a, b)| !cross(a, b, point).is_negative()) {
             return Exact::zero();
@@ -223,7 +223,7 @@ fn signed_square(x: &Exact) -> Exact {
     x * x.abs()
 }
 
-/// Signed square of the distance of the hulls, or of the negative penetration depth.
+/// Signed square of the distance of the hulls. If the hulls overlap, the distance is the negative penetration depth.
 fn separation(a: &Solid, b: &Solid) -> Exact {
     let of_axes = |a: &Solid, b: &Solid| {
         let face = |(start, end): (&Point, &Point)| {

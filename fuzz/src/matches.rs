@@ -1,4 +1,4 @@
-//! Peers play a match. An attacker reads all packets and sends noise, and truncated, repeated or changed packets.
+//! Peers play a match. An attacker reads all packets, and sends noise and truncated, repeated or changed packets.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -53,7 +53,7 @@ impl Transport for Tapped {
 /// Statistics of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Last tick confirmed by host and player; 0 if one of them has stopped.
+    /// Last tick confirmed by both host and player, or 0 if one of them has stopped.
     pub ticks: u64,
     /// Number of packets that the attacker sent.
     pub packets: u64,
@@ -78,7 +78,7 @@ struct Match {
 /// Plays a match of a hundred ticks, disturbed as the bytes describe.
 ///
 /// # Panics
-/// When a peer's report or replay is invalid, or packets without a correct checksum make peers stop or differ.
+/// When a peer's report or replay is invalid. Also when packets without a correct checksum make peers stop or differ.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let options = source.pick(&[PeerOptions::lockstep(), PeerOptions::rollback()]);
@@ -171,7 +171,7 @@ impl Match {
                 changed
             }
         };
-        // Without forging, an unchanged packet is repeated only from its sender.
+        // An attacker that cannot forge repeats an unchanged packet only from its original sender.
         let from = if !self.forges && packet == heard { sender } else { from };
         if self.forges {
             repair(0, &mut packet);

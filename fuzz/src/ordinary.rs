@@ -1,5 +1,5 @@
-//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. About one in five hundred
-//! still reaches a clamp, for example when a chain is spawned across a pile.
+//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. About one scene in five
+//! hundred still reaches a clamp, for example when a chain is spawned across a pile.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -99,7 +99,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     ]
 }
 
-/// A sensor, half of the time with a fluid.
+/// A sensor, which contains a fluid in half of the cases.
 fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     if source.one_in(2) {
         return shape.sensor();
@@ -129,7 +129,8 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // The half second until bodies sleep is long in a short scene: most piles get a higher sleep speed.
+    // In a short scene, the half second until bodies sleep is long. Most piles get a higher sleep speed, to sleep
+    // sooner.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
@@ -243,7 +244,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
     let mut joint = JointDef::new(body, other, joints::ordinary_kind(source)).anchor_a(a).anchor_b(b);
-    // The current angle: joints that hold the angle have nothing to correct.
+    // The angle is the current one, so that joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))
 }

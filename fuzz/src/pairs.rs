@@ -1,5 +1,5 @@
-//! Two shapes at changing relative positions. Their contact must not depend on caches, on SIMD or, except for ties, on
-//! the order of the shapes.
+//! Two shapes at changing relative positions. Their contact must not depend on caches or on SIMD. Except for ties, it
+//! must not depend on the order of the shapes either.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,12 +11,13 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference in metres between two separations, or a separation and a distance. A face of the second shape
-/// must be better by half a millimetre to be chosen, and outlines within another half a millimetre count as touching.
+/// Maximum difference in metres between two separations, or between a separation and a distance. A face of the second
+/// shape must be better by half a millimetre to be chosen. Outlines within another half a millimetre of each other
+/// count as touching.
 const ERROR: Fx = fx!(0.001001);
 /// Maximum difference in metres between the distances of A from B and of B from A: twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
-/// Divisor of the size, for a part added to [`DISTANCE_ERROR`].
+/// The size divided by this number is added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;
 
 #[derive(Clone)]
@@ -27,7 +28,7 @@ struct Pair {
     shapes: [ShapeId; 2],
 }
 
-/// Moves one shape around another. Returns the number of contacts; `None` if a shape is refused.
+/// Moves one shape around another. Returns the number of contacts, or `None` if a shape is refused.
 ///
 /// # Panics
 /// When a contact is invalid, or depends on caches, SIMD or the order of the shapes.
@@ -40,7 +41,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let new_swapped = Pair::new(config, still, moving, true)?;
     let (mut first, mut bare) = (new.clone(), new.clone());
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
-    // Tests boxes one pair at a time. The other worlds may use SIMD lanes.
+    // This world tests boxes one pair at a time. The other worlds may use SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
     assert!(scalar, "every machine has the scalar backend");
     let mut contacts = 0;
@@ -48,8 +49,8 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
         let position = source.mostly_vec(-reach, reach);
         let angle = source.angle();
-        // A pair that has hardly moved keeps its manifold, possibly that of a tie. Fresh worlds are therefore compared
-        // with the distance and with exchanged shapes.
+        // A pair that has hardly moved keeps its manifold, which may be that of a tie. Therefore only contacts of new
+        // worlds are compared with the distance and with those of exchanged shapes.
         let (mut fresh, mut swapped) = (new.clone(), new_swapped.clone());
         for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.place(position, angle);
@@ -117,7 +118,7 @@ impl Pair {
 
     fn place(&mut self, position: Vec2<Fx>, angle: Angle) {
         let [_, moving] = self.bodies;
-        // Refused beyond the end of the world.
+        // The world refuses a position beyond its end. The body then stays.
         let _ = self.world.set_transform(moving, position, angle);
         self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
@@ -129,7 +130,7 @@ impl Pair {
     }
 }
 
-/// Exchanging the shapes must not change their distance, and must reverse the normal if they are apart.
+/// Checks that exchanging the shapes does not change their distance, and reverses the normal if they are apart.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };
@@ -161,8 +162,8 @@ fn distances(pair: &Pair) {
     }
 }
 
-/// Whether consecutive edges of a polygon are almost parallel. Normals are not precise enough to decide which of them
-/// is nearest.
+/// Whether consecutive edges of a polygon are almost parallel. Their normals are then not precise enough to decide
+/// which edge is nearest.
 fn is_thin(def: &ShapeDef) -> bool {
     let Geometry::Polygon(polygon) = &def.geometry else { return false };
     let normals = polygon.normals();

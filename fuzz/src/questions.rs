@@ -19,7 +19,7 @@ mod singles;
 const COST_MAX: u64 = 60_000;
 /// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
-/// Maximum depth in metres of a probe in a shape that it rests on, or in one beyond a seam that it passes.
+/// Maximum depth in metres of a probe in a shape that it rests on, or in the next shape when it passes a seam.
 const DEPTH_OF_REST: Fx = fx!(0.021);
 
 /// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
@@ -39,7 +39,7 @@ pub fn run(bytes: &[u8]) -> u64 {
         for command in &commands {
             assert_eq!(world.execute(command), sweep.execute(command), "{command:?}");
         }
-        // Between commands and the next tick, too.
+        // Queries are also asked between the commands and the next tick.
         if source.one_in(3) {
             answers += ask(&mut source, &world, &sweep);
         }
@@ -55,7 +55,7 @@ pub fn run(bytes: &[u8]) -> u64 {
     answers
 }
 
-/// One world with three broad phases, two of which have a history.
+/// One world with three broad phases. Two of the broad phases have a history.
 struct Questions<'a> {
     world: &'a World,
     sweep: &'a World,
@@ -168,7 +168,7 @@ impl Questions<'_> {
         self.world.probe_distance(&probe, shape).expect("the shape exists").distance.saturating_add(radius)
     }
 
-    /// Checks that the shapes that overlap are found. `distance` is the distance of a shape from the query's shape.
+    /// Checks that the overlapping shapes are found. `distance` gives the distance of a shape from the query's shape.
     fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
         assert!(found.is_sorted_by(|a, b| a < b), "the shapes must be in slot order");
         if self.ordinary {
@@ -305,7 +305,8 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Checks that a cast stops where it touches, and passes no shape. `distance` is that of a shape at a fraction.
+    /// Checks that a cast stops where it touches, and passes no shape. `distance` gives the distance of a shape at a
+    /// fraction.
     fn check_cast(&self, hit: Option<CastHit>, distance: impl Fn(Fx, ShapeId) -> Fx) {
         let touched_before = |shape| distance(Fx::ZERO, shape) <= TOLERANCE;
         if let Some(hit) = hit {
@@ -313,7 +314,7 @@ impl Questions<'_> {
             let good = away.abs() <= TOLERANCE || touched_before(hit.shape);
             assert!(good, "{hit:?} stops {away} m before the shape");
         }
-        // A cast passes seams, where the probe may be as deep in the next shape as in the one it rests on.
+        // A cast passes seams. There, the probe may be as deep in the next shape as in the shape that it rests on.
         let rests = self.seen().any(|shape| touched_before(shape));
         let deeper = if rests { DEPTH_OF_REST } else { Fx::ZERO };
         let inside = |fraction, shape| distance(fraction, shape).saturating_add(deeper);
@@ -362,8 +363,8 @@ impl Questions<'_> {
         met
     }
 
-    /// The shapes in which 17 samples of a path are deeper than the tolerance, and the fraction. Links are left out
-    /// because they may be one-sided.
+    /// The shapes in which the probe is deeper than the tolerance at one of 17 samples of a path, each with the
+    /// fraction. Links are left out because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,

@@ -59,7 +59,7 @@ pub fn area(source: &mut Source<'_>) -> Area {
     area
 }
 
-/// Makes a few shapes sensors, areas or one-way, and lets some report hits.
+/// Makes a few shapes sensors, areas or one-way. Lets some report hits.
 fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     match source.below(12) {
         0 | 1 => def.events.hit = true,
@@ -139,7 +139,7 @@ pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     chain.links().expect("points that are apart")
 }
 
-/// A chain of arbitrary points; empty if it is invalid.
+/// A chain of arbitrary points, or no shapes if it is invalid.
 pub fn chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let points: Vec<_> = (0..2 + source.below(10)).map(|_| source.mostly_vec(-4000, 4000)).collect();
     let materials = [material(source)];
@@ -161,7 +161,7 @@ fn is_plump(polygon: &Polygon) -> bool {
     half.x > lockstep2d::fx!(0.1) && half.y > lockstep2d::fx!(0.1)
 }
 
-/// Maximum extent of a shape from its body's origin, on each axis.
+/// Largest distance of a point of the shape from its body's origin, on each axis.
 #[must_use]
 pub fn half_extents(shape: &ShapeDef) -> Vec2<Fx> {
     let reach = match &shape.geometry {

@@ -15,12 +15,12 @@ const HASH_BYTES: usize = 16;
 /// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 30_000;
 
-/// Reads the bytes, or the snapshot of a small scene with fields or bytes changed and mostly the hash repaired. Returns
-/// whether it is accepted.
+/// Reads a snapshot, and returns whether it is accepted. The snapshot is `bytes`, or that of a small scene with changed
+/// fields or bytes and, in most cases, a repaired hash.
 ///
 /// # Panics
-/// When an accepted world has another encoding, or breaks an invariant or depends on its caches or its broad phase
-/// within ten ticks.
+/// When an accepted world has another encoding. Also when, within ten ticks, it breaks an invariant or depends on its
+/// caches or its broad phase.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     if source.one_in(32) {
@@ -84,7 +84,7 @@ pub(crate) fn repair(snapshot: &mut [u8]) {
     snapshot[end..].copy_from_slice(&hash.0.to_le_bytes());
 }
 
-/// A world read from the bytes must stay valid and independent of its caches.
+/// Checks that a world read from the bytes stays valid and independent of its caches. Returns whether it is accepted.
 fn accept(bytes: &[u8], mut player: Option<(&mut Source<'_>, &mut Generator)>) -> bool {
     let Ok(mut world) = World::from_bytes(bytes) else { return false };
     assert_eq!(world.validate(), Ok(()), "an accepted world is valid");

@@ -68,22 +68,22 @@ impl<'a> Source<'a> {
         self.bytes.take_rest()
     }
 
-    /// Draws a byte; 0 if no bytes are left.
+    /// Draws a byte, or 0 if no bytes are left.
     pub fn byte(&mut self) -> u8 {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// Draws a number of 64 bits; 0 if no bytes are left.
+    /// Draws a number of 64 bits, or 0 if no bytes are left.
     pub fn word(&mut self) -> u64 {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// A number below `bound`; 0 if `bound` is 0.
+    /// A number below `bound`, or 0 if `bound` is 0.
     pub fn below(&mut self, bound: usize) -> usize {
         self.bytes.int_in_range(0..=bound.saturating_sub(1)).unwrap_or(0)
     }
 
-    /// True once in `n` times; false if no bytes are left.
+    /// True once in `n` times. False if no bytes are left.
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == n - 1
     }

@@ -1,4 +1,4 @@
-//! Verifies replays of small scenes, recorded, changed or forged, and arbitrary bytes.
+//! Verifies replays of small scenes that are recorded, changed or forged, and arbitrary bytes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
@@ -62,7 +62,7 @@ pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();
     let mut generator = Generator::new(source);
-    // A setup with a failing command would be refused.
+    // Commands that fail are left out, because a setup with a failing command would be refused.
     let mut world = World::new(config).expect("checked");
     let mut commands = generator.setup(source);
     commands.retain(|command| world.execute(command).is_ok());

@@ -1,4 +1,4 @@
-//! The targets whose input is a file or packets reach many results. Prints their speed.
+//! Targets whose input is a file or packets reach many results. Prints the speed of the targets.
 
 use std::collections::BTreeMap;
 

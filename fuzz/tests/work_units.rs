@@ -9,19 +9,19 @@ use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
 use lockstep2d_fuzz::source::Source;
 use lockstep2d_fuzz::{generator, verdicts};
 
-/// Maximum time of a unit of work in nanoseconds, with and without debug assertions and overflow checks.
+/// Maximum time in nanoseconds per unit of work, with and without debug assertions and overflow checks.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// Shortest time of a part that is judged alone.
+/// Shortest time of a setup or a tick that is judged. Shorter ones are judged only as a part of their file.
 const JUDGED: Duration = Duration::from_micros(50);
 
-/// Number of runs of a file. The shortest time of each part counts, because of other load on the machine.
+/// Number of runs of a file. The shortest time of each part counts, to exclude other load on the machine.
 const RUNS: usize = 5;
 
 /// Maximum number of ticks of a world.
 const TICKS: u64 = 60;
 
-/// A part of a file: its units, and the shortest time that it has taken.
+/// A setup or a tick: its units, and the shortest time that it has taken.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     units: u64,

@@ -9,7 +9,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault, as the setup, so that the game is compiled once.
+/// Planted fault. It is the setup, so that one compiled game serves for all faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Mistake {
     None,
@@ -89,7 +89,7 @@ impl Game for Pit {
     }
 }
 
-/// A kick in tick 31.
+/// Inputs of 60 ticks with a kick in tick 31.
 fn inputs() -> Vec<Vec<bool>> {
     (0..60).map(|tick| vec![tick == 30]).collect()
 }
@@ -134,7 +134,7 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
-/// A rollback to before the kick keeps the later wind.
+/// A rollback to a tick before the kick keeps the wind of the later tick.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();
@@ -144,7 +144,7 @@ fn a_rollback_shows_before_it_has_happened() {
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
 
-/// No phase of the step is blamed.
+/// The report blames no phase of the step.
 #[test]
 fn a_loss_before_the_step_is_the_fault_of_no_phase() {
     let options =

@@ -104,7 +104,7 @@ fn a_memory_that_load_leaves_is_found() {
 fn a_hash_that_changes_the_state_is_found() {
     let counts = failure(Mistake::HashCounts);
     assert!(matches!(found(&counts).0, Variant::HashPolled | Variant::HashUnpolled), "{counts}");
-    // Invisible if the hash is polled after every tick.
+    // The fault is invisible if the hash is polled after every tick.
     let tidies = failure(Mistake::HashTidies);
     assert_eq!(found(&tidies), (Variant::HashUnpolled, &Fault::Hash));
     assert_eq!(tidies.ticks, 8);

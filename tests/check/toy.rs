@@ -7,7 +7,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault, as the setup, so that the game is compiled once.
+/// Planted fault. It is the setup, so that one compiled game serves for all faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Mistake {
     None,
@@ -35,13 +35,13 @@ pub(crate) enum Mistake {
     WorkIsHuge,
 }
 
-/// Two players walk along a line and hit each other, with time to cool down.
+/// Two players walk along a line and hit each other. After a hit, a player has to cool down.
 pub(crate) struct Toy {
     mistake: Mistake,
     state: State,
-    /// Sum of the places: a cache.
+    /// Sum of the places, cached.
     total: i64,
-    /// Player and strength of the last hit: a cache.
+    /// Player and strength of the last hit, cached.
     last_hit: Option<(usize, u32)>,
     polls: Cell<u32>,
     tidy: Cell<bool>,

@@ -1,5 +1,5 @@
-// Runs a WebAssembly program: `node wasi.mjs FILE [ARGUMENT...]`. In some versions of node, `node:wasi` writes to a
-// stale buffer after the program's memory has grown.
+// Runs a WebAssembly program: `node wasi.mjs FILE [ARGUMENT...]`. This file does not use `node:wasi`, which in some
+// versions of node writes to a stale buffer after the program's memory has grown.
 import { readFileSync, writeSync } from "node:fs";
 import process from "node:process";
 

@@ -17,7 +17,7 @@ fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
-/// Overwrites the first occurrence.
+/// Overwrites the first occurrence of `old`.
 fn overwrite(bytes: &mut [u8], old: Fx, new: Fx) {
     let old = old.to_bits().to_le_bytes();
     let at = bytes.windows(8).position(|window| window == old).expect("the number occurs");
@@ -48,14 +48,14 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // Its contacts would be kept a tick longer after it stops than in a world without caches.
+    // The contacts of such a body would be kept a tick longer after its stop than in a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
-        // Velocity follows two coordinates and an angle.
+        // In the bytes, the velocity follows two coordinates and an angle.
         bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();
@@ -65,7 +65,7 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_contact_whose_points_have_one_feature_is_refused() {
-    // The next tick would find the impulse of the first point for both, unless the rows of the last tick are reused.
+    // Both points would get the impulse of the first one in the next tick, unless the rows of the last tick are reused.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let square = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap());
@@ -73,7 +73,7 @@ fn a_snapshot_of_a_contact_whose_points_have_one_feature_is_refused() {
     world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[ball]).unwrap();
     world.step();
     let add_point = |bytes: &mut Vec<u8>| {
-        // Shapes 0 and 1, touching, not passing through, one point.
+        // The contact of shapes 0 and 1 touches, does not pass through, and has one point.
         let contact = [0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1];
         let at =
             bytes.windows(contact.len()).position(|window| window == contact).expect("the contact is there");

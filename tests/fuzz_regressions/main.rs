@@ -27,7 +27,8 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an end of every edge, so none is on the wrong side. The area, by which the mass divides, is zero.
+    // Every vertex is an end of every edge, so none is on the wrong side. The area is zero, and the mass
+    // computation would divide by zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }
@@ -145,7 +146,7 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
 #[test]
 fn impulses_that_grow_over_sub_steps_are_no_overflow() {
     // An impulse accumulates several updates of at most 512 m/s and is applied at once in the next sub-step. Each ball
-    // pushes all others, and gravity reaches the speed limit.
+    // pushes all others, and gravity accelerates the balls to the speed limit.
     let gravity = Vec2::new(fx!(0), fx!(-100000));
     let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
@@ -234,7 +235,7 @@ fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
 
 #[test]
 fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
-    // The other shapes of the body are not tested.
+    // Only the new shape wakes bodies. The other shapes of its body are not tested.
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
@@ -333,7 +334,8 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // At one in four angles, rounding may put the ball's centre between the sides of the capsule, a radius deep.
+    // At one in four angles, rounding may put the ball's centre between the long sides of the capsule. The ball would
+    // then be one radius deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
     let ball = Geometry::circle(fx!(0.007)).expect("valid");
@@ -356,7 +358,7 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge most opposed to the bar's side lies beside the bar. The contact points must lie on it.
+    // The edge most opposed to the bar's side lies beside the bar. The contact points must lie on the bar.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");

@@ -43,9 +43,9 @@ impl Trajectory {
 pub(crate) struct Figures {
     pub(crate) answers: BTreeMap<String, u64>,
     slowest: Duration,
-    /// In bytes.
+    /// Largest memory use in bytes.
     memory: usize,
-    /// As a multiple of the file's size, at least 1000 bytes.
+    /// Largest memory use as a multiple of the file's size. Files below 1000 bytes count as 1000.
     multiple: usize,
 }
 
@@ -96,7 +96,7 @@ fn started() -> std::time::Instant {
     *START.get_or_init(std::time::Instant::now)
 }
 
-/// `MUTATIONS` if it is set, otherwise `few`.
+/// Number of files for a test: `MUTATIONS` if it is set, otherwise `few`.
 pub(crate) fn files_wanted(few: u64) -> u64 {
     std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }

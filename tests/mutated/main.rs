@@ -21,9 +21,9 @@ use judge::{Figures, check_replays, files_wanted, mutated};
 const FILES: u64 = 2000;
 /// Largest size of an original in bytes: larger files take longer.
 const LARGEST: usize = 60_000;
-/// Number of ticks of an accepted world.
+/// Number of ticks that an accepted world is simulated.
 const TICKS: u32 = 3;
-/// Largest memory use of a snapshot, as a multiple of its size.
+/// Largest memory use while a snapshot is read, as a multiple of its size.
 const SNAPSHOT_MULTIPLE: usize = 100;
 
 #[test]
@@ -78,7 +78,7 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     assert!(figures.answers.len() >= 6, "{:?}", figures.answers);
 }
 
-/// A vacant slot takes its generation in a file, and as much as a body in memory.
+/// In a file, a vacant slot takes the bytes of its generation. In memory, it takes as much as a body.
 #[test]
 fn what_a_snapshot_takes_is_bounded_by_its_bytes() {
     let mut world = World::default();

@@ -3,15 +3,15 @@
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 
-/// In bytes.
+/// Size in bytes.
 const CHECKSUM: usize = 8;
-/// In bytes.
+/// Size in bytes.
 const HASH: usize = 16;
-/// In bytes: magic, format, semantics and length.
+/// Size in bytes: magic, format, semantics and length.
 const SNAPSHOT_HEADER: usize = 24;
 const TRAILER: u8 = 3;
 const CHAIN: std::ops::Range<usize> = 24..40;
-/// Limits of types.
+/// Numbers at the limits of types.
 const EDGES: [u64; 12] =
     [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, 0xffff_ffff, u64::MAX];
 
@@ -62,7 +62,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let other = &others[below(rng, others.len())];
             let (at, from) = (below(rng, length), below(rng, other.len()));
             if rng.below(2) == 0 {
-                // The beginning of one file and the end of another.
+                // Joins the beginning of one file and the end of another.
                 file.truncate(at);
                 file.extend_from_slice(&other[from..]);
             } else {
@@ -85,7 +85,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // At the beginning of a part, where lengths are, or anywhere.
+            // The place is the beginning of a part, where lengths are, or any other.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);
@@ -101,7 +101,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
     mutation
 }
 
-/// 0 if `bound` is 0.
+/// Random number below `bound`, or 0 if `bound` is 0.
 pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
     usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
@@ -117,7 +117,7 @@ fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     (start, (start + 1 + below(rng, 100)).min(file.len()))
 }
 
-/// Beginnings of the parts of a replay or snapshot, and the end.
+/// Beginnings of the parts of a replay or snapshot, followed by the length of the file.
 fn boundaries(file: &[u8]) -> Vec<usize> {
     let mut places = vec![0];
     if is_snapshot(file) {
@@ -150,7 +150,7 @@ fn replay_header(file: &[u8]) -> Option<usize> {
     Some(56 + number(file, 32)? + number(file, 36)?)
 }
 
-/// Recomputes all that a forger can repair without the game.
+/// Recomputes the checksums and hashes that a forger can repair without the game.
 pub(crate) fn repair(file: &mut [u8]) {
     if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
 }

@@ -152,7 +152,7 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
-        // The spectator has lost its contact, and has found another one.
+        // The contact of the spectator has left. The spectator has found another one.
         assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
@@ -305,10 +305,10 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     table.play(3000);
     let peer = table.peer(1);
     assert_eq!((peer.status(), peer.seats()), (Some(Status::Joining), vec![]));
-    // 64 seats, of which the game has four.
+    // A session has 64 seats, of which the game uses four.
     assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
-    // As a loop over no seats builds it.
+    // The inputs are empty, as a loop over no seats builds them.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
 }
 

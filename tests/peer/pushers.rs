@@ -40,7 +40,7 @@ pub(crate) struct Fault {
 }
 
 thread_local! {
-    /// For the next game of this thread.
+    /// The fault of the next game that this thread builds.
     pub(crate) static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
 }
 

@@ -10,7 +10,7 @@ use lockstep2d::session::Address;
 
 use super::pushers::{Pushers, Setup, bot};
 
-/// Packets since the attacker last took them.
+/// Packets that were sent since the attacker last took them.
 type Heard = Rc<RefCell<Vec<Vec<u8>>>>;
 
 struct Tapped {
@@ -29,7 +29,7 @@ impl Transport for Tapped {
     }
 }
 
-/// Every packet is sent again from another address, unchanged and changed, to a random peer.
+/// The attacker sends every packet again, unchanged and changed, from another address to a random peer.
 #[test]
 fn a_sealed_match_ignores_strangers() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(20)), 1);

@@ -17,7 +17,7 @@ fn world(gravity: Fx) -> World {
     World::new(Config { gravity: Vec2::new(fx!(0), gravity), ..Config::default() }).expect("valid")
 }
 
-/// The surface is at height 0, `half` m to either side of `x`; 20 m deep.
+/// Adds a pool with its surface at height 0, from `x - half` to `x + half`, 20 m deep.
 fn pool(world: &mut World, x: Fx, half: Fx, area: Area) -> BodyId {
     let shape = ShapeDef::new(Polygon::rectangle(half, fx!(10)).expect("valid")).area(area);
     world.spawn(&BodyDef::fixed().position((x, fx!(-10))), &[shape]).expect("valid")
@@ -58,7 +58,7 @@ fn a_box_of_half_the_density_floats_half_submerged() {
     for (density, height) in [(fx!(0.5), fx!(0)), (fx!(0.25), fx!(0.1)), (fx!(0.9), fx!(-0.16))] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
-        // Flat enough to be stable.
+        // The raft is flat enough to be stable.
         let raft = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.2)).expect("valid")).density(density);
         let raft = spawn_awake(&mut world, raft, (fx!(3), fx!(1)));
         run(&mut world, 900);
@@ -76,7 +76,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
     let rounded = Geometry::Polygon(
         Polygon::rectangle(fx!(0.9), fx!(0.2)).expect("valid").rounded(fx!(0.1)).expect("valid"),
     );
-    // Half submerged, a symmetric shape has its centre at the surface.
+    // The shapes have half the density of water, so that their centres are at the surface.
     for geometry in [disc, pill, rounded] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
@@ -160,7 +160,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     let mut world = world(fx!(0));
     let wind = Area::new().force((fx!(3), fx!(4)));
     let gust = ShapeDef::new(Polygon::square(fx!(100)).expect("valid")).area(wind);
-    // In the frame of the area's body.
+    // The force is along the axes of the area's body.
     world.spawn(&BodyDef::fixed().angle(Angle::QUARTER), &[gust]).expect("valid");
     let bodies = [fx!(1), fx!(10)]
         .map(|density| spawn(&mut world, square(fx!(0.5)).density(density), (fx!(0), density)));
@@ -301,14 +301,14 @@ fn what_floats_sleeps_and_wakes() {
     assert!(at(&world, carrier).x > fx!(8));
     run(&mut world, 400);
     assert_eq!(asleep(&world), [true, true]);
-    // A change of the sea wakes the bodies in it.
+    // A change of the sea wakes the bodies inside.
     let shape = world.shapes_of(sea)[0];
     let denser = world.shape(shape).expect("valid").def().area(water.density(fx!(2)));
     world.set_shape(shape, &denser).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
     run(&mut world, 600);
     assert_eq!(asleep(&world), [true, true]);
-    // Half a second below the sleep speed may leave an error of half a second at that speed.
+    // A body that is slower than the sleep speed for half a second may be off by half a second of that speed.
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");
     assert_eq!(asleep(&world), [false, false]);

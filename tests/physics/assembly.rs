@@ -46,10 +46,10 @@ pub(crate) enum Mix {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
     Hit,
-    /// As one rigid body.
+    /// All bodies move as one rigid body.
     Spin,
     Scatter,
-    /// At rest, under gravity.
+    /// All bodies are at rest at first, under gravity.
     Hang,
 }
 
@@ -88,7 +88,7 @@ fn length(v: Vec2<Fx>) -> Fx {
 }
 
 impl Case {
-    /// Number of bodies, and pairs of joined ones.
+    /// Number of bodies, and the pairs of bodies that are joined.
     fn links(&self, rng: &mut Rng) -> (usize, Vec<(usize, usize)>) {
         let few = |rng: &mut Rng, low: u32, high: u32| (low + rng.below(high - low + 1)) as usize;
         match self.shape {
@@ -167,7 +167,7 @@ impl Case {
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
-                        // The first link down spans a row.
+                        // The length of the first link downwards is the number of bodies in a row.
                         let w = links.iter().find(|(a, b)| b - a > 1).map_or(2, |(a, b)| b - a);
                         let w = if links.contains(&(0, 2)) && w == 2 { 2 } else { w };
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))
@@ -182,7 +182,7 @@ impl Case {
     }
 
     fn joint(&self, rng: &mut Rng, a: BodyId, b: BodyId, [pa, pb]: [&Plan; 2]) -> JointDef {
-        // On or near the line between the centres.
+        // The anchor is on or near the line between the centres.
         let part = rng.range(fx!(0.1), fx!(0.9));
         let between = pb.place - pa.place;
         let aside = if rng.chance(1, 3) { fx!(0.5) } else { fx!(0) };

@@ -26,7 +26,7 @@ impl Assembly {
         bodies + self.joints.iter().map(|&id| self.spring_energy(id)).sum::<f64>()
     }
 
-    /// About the origin.
+    /// Momentum, and angular momentum about the origin.
     pub(crate) fn momentum(&self) -> Momentum {
         let mut sum = Momentum::default();
         for &id in &self.bodies {
@@ -42,7 +42,7 @@ impl Assembly {
         sum
     }
 
-    /// In J: the weight of all bodies times 1 m.
+    /// Unit of energy in J for assemblies that start at rest: the weight of all bodies times 1 m.
     pub(crate) fn scale(&self) -> f64 {
         let gravity = float(self.world.config().gravity.y).abs();
         self.bodies.iter().map(|&id| float(self.world.body(id).expect("there").mass()) * gravity).sum::<f64>()
@@ -63,7 +63,7 @@ impl Assembly {
         let gap = at_b - at_a;
         let gap = (float(gap.x), float(gap.y));
         let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
-        // A spring whose force is at most `max`.
+        // Energy of a spring whose force is at most `max`.
         let limited = |hertz: Fx, mobility: f64, x: f64, max: f64| {
             let stiffness = omega(hertz).powi(2) / mobility;
             let soft = x.min(max / stiffness);
@@ -98,24 +98,24 @@ impl Assembly {
         }
     }
 
-    /// In metres.
+    /// Largest joint error in metres.
     pub(crate) fn gap(&self) -> f64 {
         let error = |&id: &JointId| self.world.joint_error(id).map_or(0.0, float);
         self.joints.iter().map(error).fold(0.0, f64::max)
     }
 }
 
-/// In kg m/s and kg m^2/s.
+/// Momentum in kg m/s and angular momentum in kg m^2/s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Momentum {
     linear: [f64; 2],
-    /// Sum of the magnitudes of all momenta.
+    /// Sum of the magnitudes of the momenta of all bodies.
     size: f64,
     angular: f64,
 }
 
 impl Momentum {
-    /// Changes as shares of the sizes at the start.
+    /// Changes of momentum and angular momentum, relative to `size` and to the angular momentum at the start.
     pub(crate) fn change(&self, end: &Self) -> [f64; 2] {
         let apart = (end.linear[0] - self.linear[0]).hypot(end.linear[1] - self.linear[1]);
         [apart / self.size, ((end.angular - self.angular) / self.angular).abs()]

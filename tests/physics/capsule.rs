@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::World;
 
-/// Along the x axis, with round ends about (±half, 0).
+/// A capsule along the x axis, with round ends about (±half, 0).
 fn pill(half: Fx, radius: Fx) -> ShapeDef {
     let end = Vec2::new(half, fx!(0));
     ShapeDef::new(Geometry::capsule(-end, end, radius).expect("valid"))
@@ -25,7 +25,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
-    // Sleeping bodies have no contacts.
+    // The loop keeps the last contacts, because sleeping bodies have none.
     let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
@@ -94,7 +94,7 @@ fn capsules_in_line_exchange_velocities() {
     assert!(target.distance(Vec2::new(fx!(4), fx!(0))) < fx!(0.001), "{target:?}");
 }
 
-/// Rests on one point, falls over, and rolls.
+/// The capsule rests on one point at first, falls over, and rolls.
 #[test]
 fn a_capsule_that_leans_falls_over_to_that_side() {
     let mut world = World::default();

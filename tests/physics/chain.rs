@@ -1,4 +1,4 @@
-//! No ghost collisions at the vertices of a chain at 1 to 20 m/s. Chains are solid.
+//! At the vertices of a chain there are no ghost collisions at 1 to 20 m/s. Chains are solid.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Lowest points are 0.5 m below the centres, 0.1 m for the small ball.
+/// Shapes whose lowest points are 0.5 m below their centres (0.1 m for the small ball).
 fn movers() -> [(&'static str, ShapeDef); 5] {
     let square =
         |half, radius| Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid");
@@ -36,7 +36,7 @@ fn flat() -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// In metres.
+/// Depth in metres of the deepest contact with a link.
 fn deepest_in_chain(world: &World) -> Fx {
     let is_link = |id| matches!(world.shape(id).map(|shape| shape.geometry()), Some(Geometry::Link { .. }));
     let contacts = world.contacts().filter(|contact| is_link(contact.shape_a) || is_link(contact.shape_b));
@@ -238,7 +238,7 @@ fn what_reaches_over_a_crest_meets_the_far_side() {
         for _ in 0..180 {
             world.step();
             let tip = world.body(plank).expect("there").transform().apply(Vec2::new(fx!(-12), fx!(-0.1)));
-            // From (0, -1) to (-10, 1).
+            // The far side goes from (0, -1) to (-10, 1).
             let ground = fx!(-1) - tip.x / 5;
             assert!(tip.y > ground - fx!(0.05), "the tip is at {tip:?}");
         }

@@ -36,8 +36,8 @@ fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     assert_eq!((world.awake_body_count(), world.faults()), (0, 0), "{name}");
 }
 
-/// Exactly above each other, or up to a centimetre aside. Contacts give way by up to 0.72 mm for each box above, so
-/// that the top of `n` boxes sinks by up to `n^2 / 2` times that.
+/// The boxes are exactly above each other, or up to a centimetre aside. A contact gives way by up to 0.72 mm for each
+/// box above it, so that the top of `n` boxes sinks by up to `n^2 / 2` times 0.72 mm.
 #[test]
 fn a_column_of_a_hundred_boxes_stands() {
     let counts = [10, 40, 60, 80, 100].into_iter();
@@ -57,7 +57,7 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
-/// Without their radii the outlines do not touch, so that each tick chooses the reference face anew.
+/// The outlines touch only because of their radii, so that each tick chooses the reference face anew.
 #[test]
 fn a_column_of_a_hundred_rounded_boxes_stands() {
     let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();
@@ -97,7 +97,7 @@ fn plates_on_discs_stand() {
     }
 }
 
-/// E. Catto's house of cards: 40 cm by 2 mm, at 25 degrees.
+/// E. Catto's house of cards. A card is 40 cm by 2 mm and leans at 25 degrees.
 #[test]
 fn a_house_of_cards_stands() {
     for rate in [60, 120] {
@@ -124,7 +124,7 @@ fn a_house_of_cards_stands() {
     }
 }
 
-/// A semicircular arch of wedges, with a mean radius of 4 m, to which `thickness` is relative.
+/// Builds a semicircular arch of wedges with a mean radius of 4 m. `thickness` is a share of that radius.
 fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     for stone in 0..stones {
         let place = |number: u32, radius: Fx| {

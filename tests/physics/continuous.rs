@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
 
-/// 5 cm in size.
+/// A shape of 5 cm.
 fn small(kind: u32) -> ShapeDef {
     let geometry = match kind {
         0 => Geometry::circle(fx!(0.025)),
@@ -110,7 +110,8 @@ fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
     }
 }
 
-/// Counts, of 300 balls of 6 cm, those that pass a blade of 2 cm that turns by up to half a radian in a tick.
+/// Launches 300 balls of 6 cm near a blade of 2 cm that turns by up to half a radian in a tick. Returns the number of
+/// balls that pass the blade.
 fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
     let mut rng = Rng::new(47);
     let mut passed = 0;
@@ -190,8 +191,8 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
     assert_eq!(hashes[0], hashes[1]);
 }
 
-/// A drum as fast as the washer's: sweeping does not press the boxes together. The motion is chaotic, so means of
-/// several starts are compared.
+/// The drum turns as fast as the washer's. Sweeping against the drum does not press the boxes together. The motion is
+/// chaotic, so means of several starts are compared.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     const STARTS: i32 = 8;

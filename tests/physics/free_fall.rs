@@ -17,7 +17,7 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
     let body = only_body(game.world());
     let step_of = |v: Speed| {
-        // v / 240. `Shift` has 5 more fraction bits than `Speed`.
+        // One sub-step moves by v / 240. `Shift` has 5 more fraction bits than `Speed`.
         let bits = div_round(i128::from(v.to_bits()) << 5, 240);
         Shift::from_bits(bits.try_into().expect("a small step"))
     };
@@ -34,7 +34,7 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     });
 }
 
-/// `x_n = g h^2 n (n + 1) / 2`. Rounding errors are less than 2 mm in 10 s and 500 m.
+/// `x_n = g h^2 n (n + 1) / 2`. Rounding errors are less than 2 mm after 10 s of a fall by 500 m.
 #[test]
 fn ten_seconds_are_within_2_mm_of_the_closed_form() {
     let mut game = open("free_fall");

@@ -55,7 +55,7 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-/// Pairs of wheels against a brake for a minute.
+/// A motor turns pairs of wheels against a brake for a minute.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
@@ -72,7 +72,7 @@ fn the_ratio_is_kept_under_load() {
         let axle_a = hinge(&mut world, ground, a, Revolute::new().motor(fx!(9), fx!(400)));
         let axle_b = hinge(&mut world, ground, b, Revolute::new().motor(fx!(0), fx!(20)));
         let gear = fitted(&mut world, a, b, Gear::new(teeth[0], teeth[1]));
-        // While the wheels spin up, and afterwards.
+        // Largest errors while the wheels spin up, and afterwards.
         let mut worst = [fx!(0); 2];
         for tick in 0..3600 {
             world.step();
@@ -81,7 +81,7 @@ fn the_ratio_is_kept_under_load() {
         }
         run(&mut world, 0);
         // Gears yield by a / (2 pi 60 Hz)^2 under an acceleration a: 4 mm where the brake holds a wheel of 0.3 kg.
-        // Without a pitch point the error is in radians, 2 pi for a tooth.
+        // Gears without a pitch point have an error in radians, which is 2 pi for a tooth.
         let unit = if teeth[0] + teeth[1] == 0 { fx!(10) } else { fx!(1) };
         let most = [fx_mul(fx!(0.008), unit), fx_mul(fx!(0.006), unit)];
         assert!(worst[0] < most[0] && worst[1] < most[1], "{teeth:?}: the teeth are {worst:?} m apart");
@@ -213,7 +213,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     let ground = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     let pinion = wheel(&mut world, fx!(0.5), fx!(0));
     let crank = hinge(&mut world, ground, pinion, Revolute::new().motor(fx!(-2), fx!(300)));
-    // To the right of the wheel.
+    // The bar is to the right of the wheel.
     let bar = ShapeDef::new(Polygon::rectangle(fx!(0.1), fx!(3)).expect("valid"));
     let rack = BodyDef::dynamic().position((fx!(0.5), fx!(0))).never_sleeps();
     let rack = world.spawn(&rack, &[bar]).expect("valid");
@@ -221,7 +221,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
         .joint_along(ground, rack, Prismatic::new(), (fx!(0.5), fx!(0)), (fx!(0), fx!(1)))
         .expect("valid");
     world.add_joint(&slide).expect("valid");
-    // The axis points up, to the right of the wheel.
+    // The axis of the rack points up, to the right of the wheel.
     let def = JointDef::new(pinion, rack, Rack::new(fx!(0.5))).angle_b(Angle::QUARTER);
     let def = world.fit_joint(&def).expect("valid");
     let joint = world.add_joint(&def).expect("valid");
@@ -236,7 +236,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     assert!(turned < fx!(-9));
     // The right side of a wheel that turns clockwise goes down.
     close(at(&world, rack).y, turned / 2, fx!(0.005));
-    // 1.2 kg on a lever of half a metre.
+    // The crank holds 1.2 kg on a lever of half a metre.
     let (_, torque) = world.joint_part_force(crank, JointPart::Motor).expect("valid");
     close(torque, fx!(6), fx!(0.05));
 }
@@ -309,7 +309,7 @@ fn weights_on_a_rope_accelerate_as_theory_says() {
 #[test]
 fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let mut world = world(fx!(-10));
-    // Half the mass balances.
+    // Half the mass is in balance.
     let (weights, rope) = atwood(&mut world, [fx!(3), fx!(6)], fx!(2));
     run(&mut world, 600);
     for body in weights {

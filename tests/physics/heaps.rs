@@ -25,7 +25,7 @@ fn random_shape(rng: &mut Rng) -> ShapeDef {
     ShapeDef::new(shape.expect("valid")).restitution(restitution)
 }
 
-/// 5 to 24 bodies in a pit of 3 to 8 m.
+/// A pit of 3 to 8 m with 5 to 24 bodies.
 fn heap(seed: u64, rolling_resistance: Fx) -> World {
     let mut rng = Rng::new(seed);
     let mut world = World::default();
@@ -77,8 +77,8 @@ fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     });
 }
 
-/// At most one heap in forty is awake after 40 s. In the next 10 s its largest kinetic energy is less than twice that
-/// of the 10 s before, plus 0.01 J.
+/// At most one heap in forty is awake after 40 s. The largest kinetic energy of such a heap in the next 10 s is less
+/// than twice that of the 10 s before, plus 0.01 J.
 #[test]
 fn few_heaps_are_restless_and_none_gathers_energy() {
     let count = sweep::size(2400, 120);

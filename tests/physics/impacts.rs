@@ -25,7 +25,7 @@ fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> ShapeDef {
     ShapeDef::new(Geometry::segment(a, b).expect("valid"))
 }
 
-/// In J.
+/// Kinetic energy of the dynamic bodies in J.
 fn kinetic(world: &World) -> Fx {
     let dynamic = world.bodies().filter(|(_, body)| body.kind() == BodyKind::Dynamic);
     dynamic.fold(Fx::ZERO, |sum, (_, body)| sum + body.kinetic_energy())
@@ -71,7 +71,7 @@ fn colliding_balls_keep_their_angular_momentum() {
             world.spawn(&spins, &[ball]).expect("valid");
             let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
             world.spawn(&def, &[ball]).expect("valid");
-            // And the sum of the absolute values of its parts.
+            // Angular momentum, and the sum of the absolute values of its parts.
             let momentum = |world: &World| {
                 world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
                     let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -88,8 +88,8 @@ fn colliding_balls_keep_their_angular_momentum() {
     );
 }
 
-/// A bar that falls flat onto a ledge below one half of it. The impulse points upwards, so the bar moves sideways at
-/// most as fast as in Box2D.
+/// A bar falls flat onto a ledge below one half of it. The impulse points upwards, so the bar moves sideways at most as
+/// fast as in Box2D.
 #[test]
 fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     let cases = [60u32, 240].into_iter().flat_map(|rate| {
@@ -145,7 +145,7 @@ fn a_spinning_rod_gains_no_energy() {
     }
 }
 
-/// Walls of a square room with sides of `2 half` metres.
+/// Adds the walls of a square room with sides of `2 half` metres.
 fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDef) {
     let (place, length) = (half + 1, half + 2);
     for (x, y) in [(0, -place), (0, place), (-place, 0), (place, 0)] {
@@ -155,7 +155,7 @@ fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDe
     }
 }
 
-/// Restitution 1, with corners and friction.
+/// The body has restitution 1. Some shapes have corners, and two thirds of the cases have friction.
 #[test]
 fn a_closed_room_keeps_its_energy() {
     let shapes = |at: usize| match at {
@@ -191,7 +191,7 @@ fn a_closed_room_keeps_its_energy() {
     });
 }
 
-/// Bodies often hit walls and each other in one sub-step.
+/// Bodies often hit a wall and another body in one sub-step.
 #[test]
 fn several_bodies_in_a_closed_room_keep_its_energy() {
     let shapes = [rectangle(fx!(0.5), fx!(0.5)), rectangle(fx!(1), fx!(0.1)), circle(fx!(0.5))];

@@ -12,7 +12,7 @@ pub(crate) struct Bench {
     pub(crate) b: BodyId,
 }
 
-/// Body A, joined to body B.
+/// Kind of body A, which is joined to body B.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Ground {
     Fixed,
@@ -23,7 +23,7 @@ pub(crate) enum Ground {
 pub(crate) const RATE: i64 = 240;
 
 impl Bench {
-    /// A is at the origin. B has 2 kg and a radius of gyration of 0.5 m.
+    /// Puts A at the origin and B at `place`. B has 2 kg and a radius of gyration of 0.5 m.
     pub(crate) fn new(ground: Ground, gravity: Fx, place: Vec2<Fx>, angle: Fx) -> Self {
         Self::with_mass(ground, gravity, (fx!(2), fx!(0.5)), place, angle)
     }
@@ -68,7 +68,7 @@ pub(crate) fn close(found: Fx, expected: Fx, within: Fx, what: &str) {
     assert!((found - expected).abs() <= within, "{what}: {found}, expected {expected}");
 }
 
-/// `1 / (1 / a + 1 / b)`.
+/// Effective mass of two masses: `1 / (1 / a + 1 / b)`.
 pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
     lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
 }

@@ -14,11 +14,11 @@ use crate::assembly::{Case, Mix, SHAPES, Shape, Start};
 use crate::energy;
 use crate::sweep;
 
-/// 20 s.
+/// Duration of 20 s.
 const TICKS: u32 = 1200;
 
-/// Hard pulls at long arms turn a body too far within a sub-step, `h^2 F r / I` above 1 (docs/DESIGN.md, "Result and
-/// known limits"). They gain 2 to 39 %.
+/// Exceptions, which gain 2 to 39 %. Hard pulls at long arms turn a body too far within a sub-step: `h^2 F r / I` is
+/// above 1 (docs/DESIGN.md, "Result and known limits").
 const BEYOND: [Case; 6] = [
     Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 12 },
     Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
@@ -28,8 +28,8 @@ const BEYOND: [Case; 6] = [
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 45 },
 ];
 
-/// Heavy bodies pull a light one so hard that joints open by metres, until values are clamped, without a gain of
-/// energy.
+/// Assemblies in which heavy bodies pull a light one so hard that joints open by metres and values are clamped. They
+/// gain no energy.
 const GAPING: [Case; 2] = [
     // 300 kg hang on a disc of 1 kg, at 15 radii of gyration.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
@@ -62,7 +62,7 @@ fn assemblies_of_hinges_gain_no_energy() {
 }
 
 /// If the stiffness between anchors depended on the directions of the arms, 6 of 60 assemblies would gain up to 5 times
-/// their energy.
+/// their initial energy.
 #[test]
 fn assemblies_of_soft_welds_gain_no_energy() {
     never_gain(Mix::SoftWeld, Start::Hit);
@@ -83,16 +83,16 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// Both bodies are pushed at one point. If each were pushed at its own anchor, angular momentum would grow where the
-/// anchors are apart, and energy in 9 % of these assemblies, by up to 50 times.
+/// The joint pushes both bodies at one point. If it pushed each at its own anchor, angular momentum would grow where
+/// the anchors are apart. Energy would then grow in 9 % of these assemblies, by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);
     never_gain(Mix::Weld, Start::Hang);
 }
 
-/// Without geometric stiffness, a hanging assembly would gain up to 934 446 times its energy. With it, the worst in
-/// [`BEYOND`] gains 23 %.
+/// Without geometric stiffness, a hanging assembly would gain up to 934 446 times its energy. With geometric stiffness,
+/// the worst hanging assembly of [`BEYOND`] gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
@@ -108,8 +108,8 @@ fn assemblies_beyond_the_engine_stay_together() {
     });
 }
 
-/// In free space momentum is conserved. Angular momentum changes where geometric stiffness acts: by up to 5 % in 20 s,
-/// in at most one of 50 assemblies.
+/// In free space, momentum is conserved. Angular momentum changes where geometric stiffness acts: in at most one of 50
+/// assemblies, and by up to 5 % in 20 s.
 #[test]
 fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     let seeds = sweep::size(60, 2);
@@ -134,8 +134,8 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     assert!(changed * 50 <= count, "the angular momentum of {changed} of {count} assemblies changed");
 }
 
-/// If the stiffness of springs along a line depended on the pose, 10 of 60 assemblies of wheels, or of rods, ropes and
-/// springs, would gain energy.
+/// If the stiffness of springs along a line depended on the pose, 10 of 60 assemblies would gain energy. This holds for
+/// assemblies of wheels and for those of rods, ropes and springs.
 #[test]
 fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     for mix in [Mix::Wheel, Mix::Rod, Mix::Prismatic] {
@@ -144,7 +144,7 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     }
 }
 
-/// Without geometric stiffness of sliders, they would gain up to 7600 times their energy.
+/// Without the geometric stiffness of sliders, these assemblies would gain up to 7600 times their energy.
 #[test]
 fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
@@ -160,8 +160,8 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     });
 }
 
-/// If the springs were solved before the blocks, 6 of 720 assemblies of motors would gain up to 40 times their energy,
-/// as would 10 of 720 on springs of limited force.
+/// If the springs were solved before the blocks, 6 of 720 assemblies with springs of motor joints would gain up to 40
+/// times their energy. So would 10 of 720 with springs of limited force.
 #[test]
 fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     for mix in [Mix::MotorSpring, Mix::LimitedSpring] {
@@ -186,7 +186,7 @@ impl Star {
         Star { joint: Weld::rigid().into(), hub: disc(), limb, limbs, reach }
     }
 
-    /// Returns the last limb.
+    /// Adds the hub and the limbs. Returns the last limb.
     fn spawn(&self, world: &mut World) -> BodyId {
         let &Star { joint, hub, limb, limbs, reach } = self;
         let hub = world.spawn(&BodyDef::dynamic(), &[hub]).expect("valid");
@@ -207,7 +207,7 @@ fn disc() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"))
 }
 
-/// Collides with the floor but not with its neighbours, which it may overlap.
+/// A limb collides with the floor but not with its neighbours, which it may overlap.
 fn limb(half_width: Fx, half_height: Fx) -> ShapeDef {
     let shape = ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"));
     shape.filter(Filter { category: 2, mask: !2, group: 0 })
@@ -217,7 +217,7 @@ fn weightless(tick_rate: u32) -> World {
     World::new(Config { gravity: Vec2::ZERO, tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// A limb is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times.
+/// One limb is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times.
 #[test]
 fn a_star_of_welds_that_is_hit_gains_no_energy() {
     for limbs in 3..=8 {
@@ -277,7 +277,7 @@ fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     });
 }
 
-/// Half of the bodies are thrown, or the star falls straight down. It sleeps after a minute.
+/// Some of the bodies are thrown, or the star falls straight down. The star sleeps after a minute.
 #[test]
 fn a_star_of_welds_comes_to_rest_on_a_floor() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -308,12 +308,12 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
     });
 }
 
-/// Dropped scratch memory and restored states change no bit.
+/// Neither dropping the scratch memory nor restoring a state changes a bit.
 #[test]
 fn a_block_depends_on_nothing_but_the_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
     let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
-    // With geometric stiffness.
+    // The last case has geometric stiffness.
     for case in hit.into_iter().chain([BEYOND[1]]) {
         let build = || case.build().world;
         let (mut whole, mut dropped) = (build(), build());

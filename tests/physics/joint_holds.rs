@@ -8,7 +8,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close};
 
-/// A rod of 2 m: `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`.
+/// A rod of 2 m swings with the period `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`.
 #[test]
 fn a_rod_is_a_pendulum() {
     let (sin, cos) = (fx!(0.0998334), fx!(0.9950042));
@@ -58,12 +58,12 @@ fn a_slider_slides_down_its_slope_and_does_not_turn() {
             });
         }
         let along = bench.world.joint_translation(joint).expect("there").x;
-        // g/2 sin 30 t^2, plus half a sub-step of the integration.
+        // The distance is g/2 sin 30 t^2, plus half a sub-step of the integration.
         close(along, fx!(10), fx!(0.05), "m");
     }
 }
 
-/// Planks of 1 m and 1 kg, welded end to end and to a wall. Returns the height of the tip.
+/// Builds planks of 1 m and 1 kg that are welded end to end and to a wall. Returns the world and the height of the tip.
 fn cantilever(planks: i64, kind: Weld) -> (World, Fx) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };
@@ -88,7 +88,7 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
         for (id, _) in world.joints() {
             assert!(world.joint_length(id).expect("there") < fx!(0.01));
         }
-        // 10 N per plank, and the torque of these loads.
+        // The first weld bears 10 N per plank, and the torque of these loads.
         let (first, _) = world.joints().next().expect("there");
         let (force, torque) = world.joint_force(first).expect("there");
         let planks = Fx::from_num(planks);
@@ -97,9 +97,9 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
     }
 }
 
-/// A soft joint yields to a load `m g` on a mass `m` by `g / omega^2`. With two rods, the upper hinge has 60 Hz and
-/// bears both. With one rod, the hinge is anchored: it connects a body without other joints to a fixed body, has 120
-/// Hz, and yields a quarter as much to an equal load.
+/// A soft joint yields to a load `m g` on a mass `m` by `g / omega^2`. With two rods, the upper hinge bears both, at 60
+/// Hz. With one rod, the hinge connects a fixed body and a body without other joints, which makes it an anchored hinge.
+/// An anchored hinge has 120 Hz, and yields a quarter as much to an equal load.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {
@@ -123,7 +123,7 @@ fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() 
     close(sag(2), soft * 2, soft / 50, "m");
 }
 
-/// 2 kg on 3 Hz come to rest `g / omega^2` below the target.
+/// A load of 2 kg on a spring of 3 Hz comes to rest `g / omega^2` below the target.
 #[test]
 fn a_wheel_sinks_into_its_suspension() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
@@ -142,8 +142,8 @@ fn a_wheel_sinks_into_its_suspension() {
     close(lowest, -fx_mul(sunk, fx!(1.372)), sunk / 20, "m at first");
 }
 
-/// Mass ratios up to 100, 1 cm to 50 m, a billion metres from the origin. The hinge that carries both bodies opens by
-/// less than 5 cm plus a twentieth of the size.
+/// Joints work with mass ratios up to 100, at sizes of 1 cm to 50 m, a billion metres from the origin. A hinge that
+/// carries two bodies opens by less than 5 cm plus a twentieth of the size.
 #[test]
 fn joints_work_at_any_size_and_place() {
     let kinds = |size: Fx| -> [JointKind; 8] {

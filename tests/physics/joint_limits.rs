@@ -45,7 +45,7 @@ fn a_slider_and_a_suspension_stop_at_their_limits() {
     let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
     let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
     stays(kind, place, range, translation);
-    // Driven by a spring with a target 10 m away.
+    // A spring with a target 10 m away drives the joint.
     let kind =
         |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
     stays(kind, place, range, translation);
@@ -59,7 +59,7 @@ fn a_distance_stops_at_its_limits() {
     stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), range, length);
 }
 
-/// 2 kg fall from the horizontal onto a stop.
+/// A load of 2 kg on a rod falls from the horizontal onto a stop.
 #[test]
 fn a_limit_bears_a_falling_rod() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(2), fx!(0)), fx!(0));
@@ -79,7 +79,7 @@ fn a_limit_bears_a_falling_rod() {
     close(torque, fx!(21.612), fx!(0.3), "N m");
 }
 
-/// Free fall until the rope of 3 m is taut.
+/// The body falls freely until the rope of 3 m is taut.
 #[test]
 fn a_rope_is_slack_and_then_taut() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(-1)), fx!(0));
@@ -100,8 +100,8 @@ fn a_rope_is_slack_and_then_taut() {
     close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
 }
 
-/// A motor of up to 10^9 N m between two boxes hits the limit once and rests there. If it acted against the limit, both
-/// impulses would grow until the hinge turned through it, by up to 266 rad.
+/// A motor of up to 10^9 N m between two boxes hits the limit once and rests there. If motor and limit acted against
+/// each other, their impulses would grow until the hinge turned through the limit, by up to 266 rad.
 #[test]
 fn a_motor_of_any_force_does_not_turn_a_hinge_through_its_limit() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -143,9 +143,9 @@ fn the_angle_of_a_hinge_counts_turns() {
         ticks += 1;
         assert!(ticks < 200);
     }
-    // From minus a quarter turn, by 0.5 rad in a tick.
+    // The hinge turns by 0.5 rad in a tick, from minus a quarter turn.
     close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
-    // To the lower limit, 9 turns away.
+    // The hinge turns to the lower limit, 9 turns away.
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
     let nine = TAU * 9;
     let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);

@@ -14,7 +14,7 @@ enum Load {
     Inertia,
 }
 
-/// A motor that needs 2 s accelerates at `max / mass` until then, and holds its speed afterwards.
+/// A motor that needs 2 s to reach its speed accelerates at `max / mass` until then, and holds the speed afterwards.
 fn accelerates(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -54,7 +54,7 @@ fn motors_have_the_acceleration_of_theory() {
     accelerates(kind, Vec2::ZERO, Load::Mass, drift);
 }
 
-/// 2 kg, 1 m from the hinge: a motor of 18 N m yields, one of 22 N m lifts.
+/// With 2 kg at 1 m from the hinge, a motor of 18 N m yields and one of 22 N m lifts.
 #[test]
 fn a_motor_stalls_under_a_larger_load() {
     for (torque, rises) in [(fx!(18), false), (fx!(22), true)] {
@@ -68,7 +68,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // A weight of 20 N.
+    // The weight is 20 N.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);
@@ -82,7 +82,7 @@ fn a_motor_stalls_under_a_larger_load() {
     }
 }
 
-/// Friction 0.5 holds 4 kg against up to 20 N.
+/// With a coefficient of 0.5, friction holds a box of 4 kg against up to 20 N.
 #[test]
 fn dragging_with_less_than_friction_does_not_move_a_box() {
     for (force, moves) in [(fx!(18), false), (fx!(24), true)] {
@@ -111,7 +111,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
     }
 }
 
-/// Friction, a limit and a spring, as in a ragdoll.
+/// The hinge has friction, a limit and a spring, as in a ragdoll.
 #[test]
 fn a_stiff_joint_comes_to_rest() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0.3), fx!(0)), fx!(0));

@@ -14,7 +14,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, RATE};
 
-/// A tick has four sub-steps.
+/// Spring in theory. A tick has four sub-steps.
 struct Oscillator {
     x: Fx,
     v: Fx,
@@ -37,7 +37,7 @@ impl Oscillator {
     }
 }
 
-/// Stretched by 0.5, compared for at least three periods.
+/// Expects that a spring stretched by 0.5 follows theory for at least three periods.
 fn follows(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -114,8 +114,8 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The stiffness is that of two point masses. At the end of an arm `r` the spring swings `sqrt(1 + m r^2 / (mB k^2))`
-/// times as fast, with the reduced mass `m`.
+/// The stiffness of a spring is chosen for two point masses. With the reduced mass `m`, the spring swings
+/// `sqrt(1 + m r^2 / (mB k^2))` times as fast at the end of an arm `r`.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
@@ -163,7 +163,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
                 [(rest.into(), -long, long), (JointKind::from(suspension), fx!(0), fx!(0))]
             {
                 let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
-                // Along y, through A's centre.
+                // The spring acts along y, through A's centre.
                 let def = JointDef::new(bench.a, bench.b, kind).angle_a(Angle::QUARTER);
                 let joint = bench.join(def.anchor_a((fx!(0), from)).anchor_b((-arm, fx!(0))));
                 let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
@@ -178,7 +178,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
     }
 }
 
-/// Two welds at one body act as one of twice the stiffness and damping.
+/// Two welds at one body act as one weld of twice the stiffness and damping.
 #[test]
 fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
     for ground in [Ground::Fixed, Ground::Free(fx!(0.7)), Ground::Free(fx!(40))] {

@@ -5,7 +5,7 @@ use lockstep2d::math::{Fx, PI, fx_mul, sqrt};
 
 use crate::{energy, joint_gap, open, run, speed_max, sweep};
 
-/// 1 m and 1 kg at 20 rad/s: `1/2 (1/3) 20^2 = 66.7 J`.
+/// A rod of 1 m and 1 kg at 20 rad/s has `1/2 (1/3) 20^2 = 66.7 J`.
 #[test]
 fn a_spinning_rod_keeps_its_hinge_and_much_of_its_energy() {
     let mut game = open("spinning_rod");
@@ -80,14 +80,14 @@ fn a_chain_carries_a_hundredfold_weight() {
     });
 }
 
-/// A thin rod about its end: `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude `a`.
+/// A thin rod swings about its end with `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude `a`.
 #[test]
 fn a_pendulum_swings_with_the_period_of_theory() {
     let mut game = open("pendulum");
     let body = game.world().bodies().last().expect("a rod").0;
     let pivot_height = fx!(0);
     let lowest = |world: &lockstep2d::world::World| {
-        // Relative to the rod at rest, 0.5 m below the hinge.
+        // The energy is relative to that of the rod at rest, 0.5 m below the hinge.
         let rod = world.body(body).expect("still there");
         energy(world) + fx_mul(rod.mass() * 10, fx!(0.5) - pivot_height)
     };
@@ -96,7 +96,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     run(&mut game, 3600, |tick, world| {
         let x = world.body(body).expect("still there").position().x;
         if last < Fx::ZERO && x >= Fx::ZERO {
-            // Interpolated between ticks.
+            // The time of the crossing is interpolated between ticks.
             let part = lockstep2d::math::fx_div(x, x - last).expect("it moves");
             crossings.push((Fx::from_num(tick + 1) - part) / 60);
         }
@@ -105,7 +105,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     });
     let periods = i64::try_from(crossings.len()).expect("few") - 1;
     let period = (crossings[crossings.len() - 1] - crossings[0]) / periods;
-    // 0.04 m thick: I = m (1 + 0.04^2) / 12 + m / 4.
+    // The rod is 0.04 m thick: I = m (1 + 0.04^2) / 12 + m / 4.
     let over_g = (fx!(1.0016) / 12 + fx!(0.25)) / 5;
     let small = fx_mul(PI * 2, sqrt(over_g).expect("positive"));
     let theory = small + small / 1600;

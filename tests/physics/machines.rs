@@ -9,7 +9,7 @@ use lockstep2d_scenes::Scene;
 
 use super::{deepest, joint_gap, open, speed_max};
 
-/// Plays a scene with its script.
+/// Plays a scene with its commands.
 fn play(name: &str, ticks: u64, mut look: impl FnMut(u64, &World)) -> Sandbox {
     let scene = Scene::find(name).expect("a scene");
     let mut game = open(name);
@@ -36,8 +36,8 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// 5.0 mm in Box2D's fall. The depth of a single fall is partly chance: at most 6 mm in 15 of 16 falls, and 10 mm in
-/// the other.
+/// Box2D's fall has an overlap of 5.0 mm. The depth of a single fall is partly chance: at most 6 mm in 15 of 16 falls,
+/// and 10 mm in the other.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);
@@ -58,8 +58,8 @@ fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     assert!(depths[8] <= fx!(0.0025) && depths[14] <= fx!(0.006) && depths[15] <= fx!(0.01), "{depths:?} m");
 }
 
-/// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. More would
-/// be if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
+/// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. More points
+/// would be if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
 #[test]
 fn ragdolls_that_rain_hardly_sink_into_each_other() {
     let (mut deep, mut count) = (0, 0);
@@ -101,7 +101,7 @@ fn nothing_leaves_a_turning_box() {
         assert!(joint_gap(world) <= fx!(0.001), "tick {tick}: gap {} m", joint_gap(world));
     });
     let container = dynamic(game.world()).next().expect("the first");
-    // 25 degrees per second for 5 s.
+    // The box turns at 25 degrees per second for 5 s.
     let angle = container.angle().to_degrees();
     assert!((angle - fx!(125)).abs() < fx!(0.5), "{angle} degrees");
     let inside = |body: &Body| {

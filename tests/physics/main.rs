@@ -69,18 +69,18 @@ fn energy(world: &World) -> Fx {
         .fold(Fx::ZERO, |a, b| a + b)
 }
 
-/// In metres.
+/// Largest distance in metres between the anchors of a joint.
 fn joint_gap(world: &World) -> Fx {
     let gap = |id| world.joint_anchors(id).map_or(Fx::ZERO, |(a, b)| a.distance(b));
     world.joints().map(|(id, _)| gap(id)).max().unwrap_or(Fx::ZERO)
 }
 
-/// In m/s.
+/// Largest speed in m/s.
 fn speed_max(world: &World) -> Fx {
     speeds(world).max().unwrap_or(Fx::ZERO)
 }
 
-/// In m/s.
+/// Mean speed in m/s.
 fn speed_mean(world: &World) -> Fx {
     let sum = speeds(world).fold(Fx::ZERO, |a, b| a + b);
     sum / i64::try_from(speeds(world).count().max(1)).expect("a small number")
@@ -90,7 +90,7 @@ fn speeds(world: &World) -> impl Iterator<Item = Fx> {
     world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| body.velocity().length())
 }
 
-/// In metres.
+/// Depth of the deepest contact point in metres.
 fn deepest(world: &World) -> Fx {
     let depth = |point: &lockstep2d::collision::ManifoldPoint| -Fx::from(point.separation);
     world.contacts().flat_map(|contact| contact.manifold.points()).map(depth).max().unwrap_or(Fx::ZERO)

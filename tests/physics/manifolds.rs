@@ -13,8 +13,8 @@ fn gap(a: &Probe, b: &Probe) -> Option<Fx> {
     manifold.points().iter().map(|point| Fx::from(point.separation)).min()
 }
 
-/// The gap equals the distance of shapes that are apart. The second shape's face must be better by 0.5 mm to become the
-/// reference face.
+/// For shapes that are apart, the gap equals the distance. The order matters little: the second shape's face becomes
+/// the reference face only if it is better by 0.5 mm.
 #[test]
 fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     let (count, tolerance) = (sweep::size(100_000, 10_000), fx!(0.00051));
@@ -46,15 +46,15 @@ fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     assert!(compared > count / 50, "expected shapes that are apart, found {compared}");
 }
 
-/// Contact points lie half-way between the surfaces, even of triangles up to 117 m long and micrometres thick, whose
-/// faces differ by less than the rounding of their normals.
+/// Contact points lie half-way between the surfaces. This holds even for triangles up to 117 m long and micrometres
+/// thick, whose faces differ by less than the rounding of their normals.
 #[test]
 fn contact_points_lie_on_outlines_that_hardly_bend() {
     let (mut rng, mut points) = (Rng::new(67), 0);
     let count = sweep::size(100_000, 10_000);
     for case in 0..count {
         let length = rng.range(fx!(20), fx!(117));
-        // 2 um to 2 cm.
+        // The triangle is 2 um to 2 cm thick.
         let thin = |rng: &mut Rng| {
             let most = [fx!(0.00001), fx!(0.0005), fx!(0.02)][rng.below(3) as usize];
             rng.range(fx!(0.000002), most)

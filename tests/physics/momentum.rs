@@ -12,7 +12,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// About the common centre of mass, with sums of absolute parts.
+/// Momentum, angular momentum about the common centre of mass, and the sums of their absolute parts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Momentum {
     linear: Vec2<Fx>,
@@ -55,7 +55,7 @@ impl Choice {
         self.0.range(-most, most)
     }
 
-    /// Unlimited in a quarter of the cases.
+    /// Force that is unlimited in a quarter of the cases.
     fn force(&mut self) -> Fx {
         if self.one_in(4) { Fx::MAX } else { self.0.range(fx!(0.1), fx!(300)) }
     }
@@ -68,7 +68,7 @@ impl Choice {
         if self.one_in(4) { Fx::ZERO } else { self.0.range(fx!(0), fx!(2)) }
     }
 
-    /// 0 in half of the cases, which makes a motor act as friction.
+    /// Speed that is 0 in half of the cases, which makes a motor act as friction.
     fn speed(&mut self) -> Fx {
         if self.one_in(2) { Fx::ZERO } else { self.within(fx!(2)) }
     }
@@ -146,13 +146,13 @@ impl Choice {
         if soft { kind.angular(self.hertz(), self.damping_ratio()) } else { kind }.into()
     }
 
-    /// 0.1 to 100 kg: each decade is equally likely.
+    /// Mass from 0.1 to 100 kg. Each decade is equally likely.
     fn mass(&mut self) -> Fx {
         let decade = [fx!(0.1), fx!(1), fx!(10)][self.0.below(3) as usize];
         fx_mul(decade, self.0.range(fx!(1), fx!(10)))
     }
 
-    /// A square of 0.1 to 2 m, with an anchor on it.
+    /// A square body of 0.1 to 2 m, and an anchor on it.
     fn end(&mut self) -> (BodyDef, Vec2<Fx>) {
         let half = self.0.range(fx!(0.05), fx!(1));
         // The side divided by the root of 6.
@@ -166,7 +166,7 @@ impl Choice {
     }
 }
 
-/// A joint that holds rigidly begins with its anchors in place.
+/// Two bodies and a joint. If the joint holds rigidly, its anchors are in place at first.
 fn pair(number: u64) -> (World, JointKind) {
     let mut choice = Choice(Rng::new(number));
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -210,7 +210,7 @@ fn changes(number: u64) -> (Fx, Fx) {
     (relative(worst.linear.x, worst.linear_size), relative(worst.angular, worst.angular_size))
 }
 
-/// Hinges and rigid welds are solved in batches and not among these joints.
+/// Hinges and rigid welds are not among these joints, because they are solved separately, in batches.
 #[test]
 fn a_joint_between_free_bodies_keeps_their_momentum() {
     sweep::for_each((0..sweep::size(1000, 250)).collect(), |number| {
@@ -221,7 +221,7 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// Holding up the higher of two balls would also turn the lower one, and nothing bears that torque.
+/// Friction that held up the higher of two balls would also turn the lower one, and nothing bears that torque.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -229,7 +229,7 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
             let mut world = World::default();
             let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid"));
             world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
-            // 1 kg each.
+            // Each ball has 1 kg.
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).density(fx!(1.2732));
             let low = BodyDef::dynamic().position((fx!(0), fx!(0.5) + fall));
             let high = BodyDef::dynamic().position((apart, fx!(3)));
@@ -260,7 +260,7 @@ fn friction_holds_a_falling_body_only_if_it_suffices() {
         for _ in 0..120 {
             world.step();
         }
-        // 0.5 m/s² for 2 s.
+        // The body falls at 0.5 m/s² for 2 s.
         let expected = if falls { fx!(-1) } else { fx!(0) };
         let y = world.body(body).expect("there").position().y;
         assert!((y - expected).abs() < fx!(0.01), "{force} N: at {y} m");

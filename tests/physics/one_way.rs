@@ -9,7 +9,7 @@ fn up() -> Angle {
     Angle::from_degrees(fx!(90))
 }
 
-/// Tops are at height 0.
+/// One-way platforms with their tops at height 0.
 fn platforms() -> [ShapeDef; 3] {
     let slab =
         |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset((fx!(0), -half));
@@ -37,12 +37,12 @@ fn height(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").position().y
 }
 
-/// From 3 m below, through (10 m/s reach 5 m) or half-way.
+/// Bodies start 3 m below the platform. They jump through (10 m/s suffice for 5 m), or turn round half-way.
 #[test]
 fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
     for platform in platforms() {
         for (name, shape) in movers() {
-            // 7.7 m/s reach 0 m from -3 m: the centre is level with the top.
+            // A body at 7.7 m/s rises from -3 m to 0 m, where its centre is level with the top.
             for (speed, lands) in [(fx!(10), true), (fx!(30), true), (fx!(7.75), false), (fx!(6.9), false)] {
                 let mut world = World::default();
                 world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
@@ -121,7 +121,7 @@ fn flush_platforms_carry_over_their_seams() {
     }
 }
 
-/// A platform on its side is a door to the left.
+/// A platform on its side lets bodies pass only to the left.
 #[test]
 fn the_direction_belongs_to_the_body() {
     let platform = platforms()[0];

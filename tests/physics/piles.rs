@@ -31,7 +31,7 @@ fn a_pyramid_of_30_rows_comes_to_rest_and_loses_no_warm_start() {
     assert!(fastest < fx!(0.00001), "{fastest} m/s after 10 s");
 }
 
-/// In Box2D 3.2 after 300 steps: top at 98.77 m, deepest overlap 21.2 mm, mean speed 0.017 m/s.
+/// Box2D 3.2 has, after 300 steps, the top at 98.77 m, a deepest overlap of 21.2 mm and a mean speed of 0.017 m/s.
 #[test]
 fn a_pyramid_of_5050_boxes_stands() {
     let mut game = open("large_pyramid");
@@ -77,7 +77,7 @@ fn a_stack_stands_on_baumgarte_contacts() {
     }
 }
 
-/// Boxes that fall a short distance onto each other, and rounded boxes.
+/// The boxes fall a short distance onto each other, or are rounded.
 #[test]
 fn stacks_stand_that_are_not_built_exactly() {
     use lockstep2d::body::{BodyDef, Polygon, ShapeDef};

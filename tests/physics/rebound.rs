@@ -38,8 +38,8 @@ fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<F
     heights
 }
 
-/// `e^2 H`. A body moves with the velocity at the middle of a sub-step, up to `g h^2 / 8` above the parabola. Positions
-/// are read at ticks.
+/// The rebound reaches `e^2 H`. A body moves with the velocity at the middle of a sub-step, so it may rise up to
+/// `g h^2 / 8` above the parabola. Positions are read at ticks, so the highest one may be below the top.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     for (e, height) in [
@@ -62,7 +62,7 @@ fn a_rebound_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Largest height in metres of the top above the nearest tick: `g dt^2 / 8`.
+/// Largest height in metres of the top of a parabola above the position at the nearest tick: `g dt^2 / 8`.
 const BETWEEN_TICKS: Fx = fx!(0.00035);
 
 /// Largest height in metres above the parabola: `g h^2 / 8`.
@@ -176,7 +176,7 @@ fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     }
 }
 
-/// In m/s, for restitution 1, a second after the impact, without gravity.
+/// Speed in m/s a second after an impact with restitution 1, without gravity.
 fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");
@@ -193,7 +193,7 @@ fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     world.body(ball).expect("still there").velocity().y
 }
 
-/// Between two walls for 100 s.
+/// The ball bounces between two walls for 100 s.
 #[test]
 fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.9), fx!(1.1), fx!(2)] {
@@ -214,7 +214,7 @@ fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     }
 }
 
-/// At 0.05 to 20 m/s, for 100 s.
+/// The ball hits the floor at 0.05 to 20 m/s, and bounces for 100 s.
 #[test]
 fn elastic_falls_rebound_to_the_same_height() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.5), fx!(0.9), fx!(1.1), fx!(2), fx!(10), fx!(20)] {
@@ -230,7 +230,7 @@ fn elastic_falls_rebound_to_the_same_height() {
     }
 }
 
-/// Without gravity, `e` times the speed, while the change of velocity is below 511 m/s, the limit of an impulse.
+/// The wall returns `e` times the speed. The change of velocity is below 511 m/s, the limit of an impulse.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
@@ -254,8 +254,8 @@ fn a_bumper_returns_more_than_the_speed() {
     }
 }
 
-/// `e` times the closing speed exceeds the format of speeds. The change of velocity is clamped, which counts as a
-/// fault, and does not wrap around.
+/// Here, `e` times the closing speed is larger than the largest speed. The change of velocity is clamped, which counts
+/// as a fault. It does not wrap around.
 #[test]
 fn bumpers_at_the_speed_limit_part() {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");

@@ -1,5 +1,5 @@
 //! On a plane or a level chain, rolling balls keep their speed at any tick rate. On flush blocks they lose a part of
-//! it.
+//! their speed.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, World};
 
 const RATES: [u32; 3] = [60, 120, 240];
 
-/// A ball of radius 0.5 m, after 16 seconds.
+/// Speed of a ball of radius 0.5 m after 16 seconds.
 fn speed_after(rate: u32, speed: Fx, start: Fx, spawn_ground: impl FnOnce(&mut World)) -> Fx {
     let config = Config { tick_rate: rate, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");

@@ -23,14 +23,14 @@ impl Floor {
         Floor { world, size }
     }
 
-    /// The position is in units of the size.
+    /// Adds a box at a position in units of the size.
     fn add(&mut self, x: Fx, y: Fx) -> BodyId {
         let shape = ShapeDef::new(Polygon::square(self.size / 2).expect("valid"));
         let position = Vec2::new(fx_mul(x, self.size), fx_mul(y, self.size));
         self.world.spawn(&BodyDef::dynamic().position(position), &[shape]).expect("valid")
     }
 
-    /// In units of the size.
+    /// Position of a body in units of the size.
     fn place(&self, id: BodyId) -> Vec2<Fx> {
         let at = self.world.body(id).expect("there").position();
         let units = |x: Fx| fx_div(x, self.size).expect("positive");
@@ -49,7 +49,7 @@ impl Floor {
     }
 }
 
-/// Sinking of the top of 8 boxes in 10 s, in units of a box, with gaps of 1 % at the start.
+/// Sinking of the top of 8 boxes in 10 s, in units of a box. The gaps at the start are 1 % of a box.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();
@@ -58,8 +58,9 @@ fn sink(config: Config, size: Fx) -> Fx {
     fx!(7.5) - floor.place(boxes[7]).y
 }
 
-/// A column of 20 boxes with offsets of 1 %, and a pyramid of 10 rows. Small boxes sway more often in the half second
-/// until they sleep: a column of boxes of 1 cm leans by 0.11 of a box in the end, of 1 m by 0.002.
+/// Checks a column of 20 boxes with offsets of 1 %, and a pyramid of 10 rows. Small boxes sway more often in the half
+/// second until they sleep. At the end, a column of boxes of 1 cm leans by 0.11 of a box, and one of boxes of 1 m by
+/// 0.002.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);
@@ -81,7 +82,7 @@ fn check_piles(config: Config, size: Fx) {
     assert!(floor.is_asleep() && top > fx!(9.4), "{size} m: the top of a pyramid is at {top}");
 }
 
-/// The table in the documentation of `Config`.
+/// The settings are those of the table in the documentation of `Config`.
 #[test]
 fn the_settings_of_each_size_are_those_of_the_table() {
     for (size, sub_steps, stiffness, distance) in [
@@ -106,14 +107,14 @@ fn stacks_of_any_size_sink_by_at_most_a_fortieth_of_a_box() {
         let sunk = sink(Config::default().for_smallest(size), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box");
     }
-    // 0.9 m and more need no other settings than the defaults.
+    // Boxes of 0.9 m and more need no other settings than the defaults.
     for size in [fx!(10), fx!(1), fx!(0.9)] {
         let sunk = sink(Config::default(), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box at defaults");
     }
 }
 
-/// The ratio of gravity to size, and the sub-steps per second, matter.
+/// The settings depend on the ratio of gravity to size, and on the sub-steps per second.
 #[test]
 fn settings_for_small_bodies_follow_gravity_and_tick_rate() {
     let moon = Config { gravity: Vec2::new(fx!(0), fx!(-1.62)), ..Config::default() };

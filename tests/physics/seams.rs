@@ -1,4 +1,4 @@
-//! No ghost collisions at the seams of flush blocks, although each pair of shapes is solved separately.
+//! At the seams of flush blocks there are no ghost collisions, although each pair of shapes is solved separately.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -14,7 +14,7 @@ enum Ground {
     Segments,
 }
 
-/// A thousand blocks or segments of half a metre, with tops at height 0.
+/// Adds a thousand blocks or segments of half a metre, with tops at height 0.
 fn ground(world: &mut World, ground: Ground) {
     let block = ShapeDef::new(Polygon::square(fx!(0.25)).expect("valid"));
     let x = |i: i32| Fx::from_num(i) / 2 - fx!(5);
@@ -38,7 +38,7 @@ fn ground(world: &mut World, ground: Ground) {
     }
 }
 
-/// Largest vertical speed, and distance.
+/// Largest vertical speed, and distance travelled.
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);
@@ -87,7 +87,7 @@ fn everything_slides_over_flush_blocks() {
     });
 }
 
-/// Thin plates collide, and a box collides with a step that is no seam.
+/// Thin plates and a box collide with what they meet: each other, and a step that is no seam.
 #[test]
 fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();

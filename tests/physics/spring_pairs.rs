@@ -40,7 +40,7 @@ fn spring_pair_gain(seed: u64, ticks: u32) -> (f64, f64) {
     let [(a, anchor_a), (b, anchor_b)] = &mut ends;
     let mut def = JointDef::new(*a, *b, kind).anchor_a(*anchor_a).anchor_b(*anchor_b);
     if !matches!(kind, JointKind::Distance(_)) {
-        // On the axis.
+        // The axis goes through both anchors.
         let gap = world.body(*b).expect("there").position() + *anchor_b
             - world.body(*a).expect("there").position()
             - *anchor_a;

@@ -72,7 +72,7 @@ fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
     }
 }
 
-/// `tan(angle)` is below the rolling resistance.
+/// The ball stays if `tan(angle)` is below the rolling resistance.
 #[test]
 fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     for (degrees, stays) in [(fx!(5), true), (fx!(7), false)] {
@@ -94,7 +94,7 @@ fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     }
 }
 
-/// Total angular momentum is conserved.
+/// The spins of both wheels together keep their angular momentum.
 #[test]
 fn resistance_between_two_wheels_is_equal_and_opposite() {
     let mut world =
@@ -118,7 +118,7 @@ fn resistance_between_two_wheels_is_equal_and_opposite() {
     assert!((after[0].1 - after[1].1).abs() < (before[0].1 - before[1].1).abs(), "{before:?} {after:?}");
 }
 
-/// `v = mu g t` up to the speed of the belt.
+/// The box has `v = mu g t` until it reaches the speed of the belt.
 #[test]
 fn a_box_on_a_belt_reaches_its_speed() {
     for ground in [line(), block()] {
@@ -136,7 +136,7 @@ fn a_box_on_a_belt_reaches_its_speed() {
     }
 }
 
-/// Below the angle of friction.
+/// The slope is below the angle of friction.
 #[test]
 fn a_belt_carries_uphill() {
     let angle = Angle::from_degrees(fx!(20));
@@ -149,7 +149,8 @@ fn a_belt_carries_uphill() {
     assert!(velocity.distance(expected) < fx!(0.001), "{velocity:?}, expected {expected:?}");
 }
 
-/// The ball finally rolls, `w r = v_belt - v`, and keeps what it gained while slipping: `v = v_belt / 3`.
+/// In the end the ball rolls, so that `w r = v_belt - v`. It keeps the speed that it gained while slipping:
+/// `v = v_belt / 3`.
 #[test]
 fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     let mut world = world(Angle::ZERO, line().surface_speed(fx!(3)));

@@ -1,4 +1,4 @@
-//! In the frame of a turning floor, its middle feels no force along the floor.
+//! A body on the middle of a turning floor feels no force along the floor, in the frame of the floor.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, Falloff, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Distance in metres from the y axis of a body at the origin.
+/// Distance in metres of `body` from the y axis of `ground`, which is at the origin.
 fn drift(world: &World, ground: BodyId, body: BodyId) -> Fx {
     let [ground, body] = [ground, body].map(|id| world.body(id).expect("there"));
     ground.angle().direction().widen().dot(body.position()).abs()

@@ -1,4 +1,4 @@
-//! Shape casts along floors, that turn, and that start inside of shapes.
+//! Shape casts that go along floors, that turn, and that start inside of shapes.
 
 use crate::oracle::along;
 use crate::sweep;
@@ -12,7 +12,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// Lowest point at `y = -0.5`.
+/// Shapes with their lowest point at `y = -0.5`.
 fn shapes() -> [Geometry; 4] {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.2)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     let round = Polygon::rectangle(fx!(0.4), fx!(0.4)).and_then(|polygon| polygon.rounded(fx!(0.1)));
@@ -35,7 +35,8 @@ fn floor(tiles: bool, slope: Angle, world: &mut World) {
     }
 }
 
-/// A shape up to 5 mm deep in a floor, as bodies rest, or 0.3 mm above it passes seams, and stops at a ledge of 1 cm.
+/// The shape starts up to 5 mm deep in a floor, as bodies rest, or up to 0.3 mm above it. The cast passes seams, and
+/// stops at a ledge of 1 cm.
 #[test]
 fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     let mut rng = Rng::new(1);
@@ -71,7 +72,7 @@ fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     assert!(ledges > 1000);
 }
 
-/// Between a floor and a ceiling that both touch the shape. Stops at a ledge of 2 mm.
+/// The shape is between a floor and a ceiling that touch it. The cast stops at a ledge of 2 mm.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     let mut rng = Rng::new(2);
@@ -100,7 +101,7 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
-/// If a cast first pushed the shape out of the floor or the ceiling, it would start up to 1 cm further from the ramp.
+/// If a cast first pushed the shape out of the floor or the ceiling, it would start up to 1 cm farther from the ramp.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     for upside_down in [false, true] {
@@ -172,13 +173,13 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
             true => world.cast_shape(&probe, way, filter),
             false => world.cast_turning(&probe, way, turns, filter),
         };
-        // Leaves the near wall, and stops at the far wall.
+        // The cast leaves the near wall, and stops at the far wall.
         let hit = cast(way, resist).expect("the far wall");
         assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
         let hit = cast(way, report).expect("the near wall");
         assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
         assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
-        // Would go deeper into the near wall.
+        // The cast would go deeper into the near wall.
         let hit = cast(-way, resist).expect("the near wall");
         assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
         assert_eq!(cast(-way, ignore), None);
@@ -211,7 +212,7 @@ fn queries_leave_out_several_bodies() {
     assert_eq!(QueryFilter::default().except_all(&bodies[..9]), None);
 }
 
-/// Not centred on its position.
+/// A random shape that is not centred on its position.
 pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
     loop {
         let mut vector = || at(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
@@ -230,7 +231,7 @@ pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Compared with many small steps: nothing is touched before the hit.
+/// The cast is compared with many small steps: no step touches a shape before the hit.
 #[test]
 fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     let mut rng = Rng::new(5);

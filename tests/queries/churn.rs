@@ -101,7 +101,7 @@ impl Churn {
                 let shape = self.shape();
                 self.world.add_shape(id, &shape).map(|_| ())
             }
-            // A body keeps a shape, so that queries find it.
+            // The last shape of a body is not removed, so that queries find the body.
             7 if self.world.body(id).expect("alive").shapes().len() < 2 => Ok(()),
             7 => shape.map_or(Ok(()), |shape| self.world.remove_shape(shape)),
             8 => {

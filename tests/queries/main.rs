@@ -74,7 +74,7 @@ fn random_filter(churn: &mut Churn) -> QueryFilter {
     QueryFilter { mask, sensors: churn.rng.chance(1, 2), except, ..QueryFilter::default() }
 }
 
-/// Copies with different broad phases or caches.
+/// Copies of a world with different broad phases or caches.
 fn twins(world: &World) -> Vec<World> {
     let with = |kind| {
         let mut twin = world.clone();
@@ -92,7 +92,7 @@ fn twins(world: &World) -> Vec<World> {
     ]
 }
 
-/// Queries, non-empty results, and rays and casts checked by the oracle.
+/// Counts of queries, of non-empty results, and of rays and casts that the oracle has checked.
 #[derive(Default, Debug)]
 struct Tally {
     queries: u32,
@@ -172,7 +172,7 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
     }
 }
 
-/// All shapes that overlap, in slot order. Shapes within the tolerance of touching are not checked.
+/// Expects all shapes that overlap, in slot order. Shapes within the tolerance of touching are not checked.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],
@@ -202,7 +202,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let hit = all.iter().find(|hit| hit.shape == solid.id);
     tally.rays += 1;
     let Some(hit) = hit else {
-        // The oracle counts a near miss as a hit.
+        // The oracle reports a hit for a near miss, too.
         let Some(reached) = traced else { return };
         for i in 0..=64 {
             let point = along(origin, translation, (reached + fx!(0.00001) * i).min(translation.length()));
@@ -213,7 +213,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let surface = solid.distance(hit.point);
     assert!(surface < TOLERANCE, "{surface} {hit:?}");
     let Some(way) = traced else { panic!("{hit:?} is not on the ray") };
-    // The oracle stops slightly above the surface: the flatter the ray, the further from the hit.
+    // The oracle stops slightly above the surface. Along a flat ray, this is farther from the hit.
     let steep = -translation.normalized().unwrap_or(Vec2::X).widen().dot(hit.normal.widen());
     let apart = (way - fx_mul(hit.fraction, translation.length())).abs();
     if hit.fraction > 0 && steep > fx!(0.05) {
@@ -247,7 +247,7 @@ fn check_cast(
     for _ in 0..100 {
         let free = gap(way).expect("solids") - skin;
         if free < fx!(0.000001) {
-            // The probe touches a shape or passes very close. A miss is not judged.
+            // The probe touches a shape or passes very close. The cast may hit or miss.
             tally.casts += u32::from(hit.is_some());
             break;
         }
@@ -282,7 +282,7 @@ fn queries_are_as_exact_far_from_the_origin() {
     }
 }
 
-/// The lowest slot is returned.
+/// Among equal shapes, the one with the lowest slot is returned.
 #[test]
 fn of_equals_the_first_slot_is_found() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -307,7 +307,7 @@ fn of_equals_the_first_slot_is_found() {
     assert!(ray.len() == 20 && ray.iter().all(|hit| hit.fraction == 0 && hit.normal == Vec2::ZERO));
 }
 
-/// The position of the shape decides the side of a one-sided link, not the probe's origin.
+/// The side of a one-sided link is decided by the position of the probe's shape, not by the probe's origin.
 #[test]
 fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     use lockstep2d::body::{BodyDef, Chain, Geometry};

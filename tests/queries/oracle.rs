@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2, closest_point_on_segment, point_in_polygon};
 use lockstep2d::world::{QueryFilter, World};
 
-/// Error of rounded corners in metres.
+/// Error of rounded corner coordinates in metres.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
 pub(crate) struct Solid {
@@ -32,7 +32,7 @@ impl Solid {
         Solid { id, corners, radius, one_sided }
     }
 
-    /// In metres; negative inside.
+    /// Distance of a point in metres, negative inside.
     pub(crate) fn distance(&self, point: Vec2<Fx>) -> Fx {
         let next = self.corners.iter().cycle().skip(1);
         let edges = self.corners.iter().zip(next);
@@ -42,7 +42,7 @@ impl Solid {
         (if inside { -nearest } else { nearest }) - self.radius
     }
 
-    /// Distance along a ray by sphere tracing: `Some(None)` for a miss, `None` if undecided.
+    /// Distance along a ray to the surface, by sphere tracing. `Some(None)` is a miss, and `None` means undecided.
     pub(crate) fn trace(&self, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<Option<Fx>> {
         let length = translation.length();
         let mut way = Fx::ZERO;

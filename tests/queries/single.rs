@@ -35,19 +35,19 @@ impl Outline {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 
-    /// Without the radius.
+    /// Whether the polygon without its radius contains a point.
     fn holds(&self, point: Vec2<Fx>) -> bool {
         self.corners.len() > 2 && point_in_polygon(&self.corners, point)
     }
 
-    /// In metres; negative inside.
+    /// Distance of a point in metres, negative inside.
     fn gap_to(&self, point: Vec2<Fx>) -> Fx {
         let nearest = self.edges().map(|(a, b)| closest_point_on_segment(point, a, b).distance(point)).min();
         let nearest = nearest.expect("corners");
         (if self.holds(point) { -nearest } else { nearest }) - self.radius
     }
 
-    /// In metres; `None` if the polygons overlap.
+    /// Distance in metres. `None` if the polygons overlap.
     fn distance(&self, other: &Outline) -> Option<Fx> {
         if self.holds(other.corners[0]) || other.holds(self.corners[0]) {
             return None;
@@ -96,7 +96,7 @@ fn origin(case: u32) -> Vec2<Fx> {
     if case.is_multiple_of(2) { Vec2::ZERO } else { Vec2::new(fx!(1000000000), fx!(-999999999.125)) }
 }
 
-/// Error of rotated corners in metres.
+/// Error of rotated corner coordinates in metres.
 const TOLERANCE: Fx = fx!(0.000002);
 
 #[test]
@@ -163,7 +163,7 @@ fn rays_and_points_are_those_of_brute_force() {
             assert!(hit.starts_inside && hit.fraction == 0 && hit.point == from, "{hit:?}");
             continue;
         }
-        // Sphere tracing does not pass the surface.
+        // Sphere tracing does not step past the surface.
         let length = translation.length();
         let mut way = Fx::ZERO;
         for _ in 0..300 {

@@ -78,7 +78,7 @@ fn what_a_kind_of_body_cannot_do_is_refused() {
     for body in [floor, lift] {
         stage.refuses(Command::Sleep { body }, wrong_kind);
     }
-    // Too far for one tick, and outside the world.
+    // The first position is too far for one tick. The second is outside the world.
     let position = Vec2::new(fx!(1000), fx!(0));
     stage.refuses(Command::MoveTo { body: lift, position, angle }, fast);
     stage.refuses(Command::MoveTo { body: lift, position: Vec2::new(Fx::MIN, Fx::MAX), angle }, far);
@@ -183,7 +183,7 @@ fn changes_to_joints_out_of_range_are_refused() {
     stage.refuses(Command::DisableJoint { joint }, stale);
 }
 
-/// If one is refused, none is added.
+/// If one body or joint is refused, none is added.
 #[test]
 fn one_of_many_refuses_all() {
     let mut stage = Stage::new();

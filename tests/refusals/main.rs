@@ -330,7 +330,8 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     let plank = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid"));
     stage.refuses(spawn(BodyDef::dynamic(), plank.offset((fx!(60), fx!(0)))), reach);
     stage.refuses(Command::AddShape { body: ball, shape: plank.offset((fx!(0), fx!(128))) }, reach);
-    // 50 rad/s are 18 m/s at a radius of gyration of 0.35 m, but 1500 m/s at 30 m, with a second ball 60 m away.
+    // A speed of 50 rad/s is 18 m/s at a radius of gyration of 0.35 m. A second ball 60 m away makes that radius 30 m,
+    // and the speed 1500 m/s.
     stage.world.set_velocity(ball, Vec2::ZERO, fx!(50)).expect("valid");
     let arm = self::ball().offset((fx!(60), fx!(0))).density(fx!(1));
     stage.refuses(Command::AddShape { body: ball, shape: arm }, |error| {

@@ -26,7 +26,7 @@ pub(crate) struct Input {
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,
-    /// Greater than 0 if inputs were not decoded.
+    /// Sum of the moods, which is 0 unless inputs were used without being decoded.
     pub(crate) moods: u64,
 }
 
@@ -72,7 +72,7 @@ impl Game for Counter {
         *self = save.clone();
     }
 
-    /// One unit, plus the magnitudes of the added numbers.
+    /// A tick costs one unit, plus the magnitudes of the added numbers.
     fn work(&self, inputs: &[Input]) -> u64 {
         1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
     }
@@ -120,7 +120,7 @@ pub(crate) fn add(first: i8, second: i8) -> [Input; 2] {
     [Input { add: first, ..Input::default() }, Input { add: second, ..Input::default() }]
 }
 
-/// Inputs change every few ticks.
+/// Inputs of a tick. They change every five ticks.
 pub(crate) fn inputs_at(tick: u64) -> [Input; 2] {
     let step = i8::try_from(tick / 5 % 7).unwrap() - 3;
     let mut inputs = add(step, 1);

@@ -7,7 +7,7 @@ pub(crate) const INPUTS: u8 = 1;
 pub(crate) const KEYFRAME: u8 = 2;
 pub(crate) const TRAILER: u8 = 3;
 
-/// Range in the trailer's payload.
+/// Byte range of the chain hash in the trailer's payload.
 pub(crate) const CHAIN: std::ops::Range<usize> = 24..40;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Forged {
         Forged { header, blocks }
     }
 
-    /// With every checksum and the chain hash repaired.
+    /// Bytes of the file with every checksum and the chain hash repaired.
     pub(crate) fn put_together(&self) -> Vec<u8> {
         let mut file = self.header.clone();
         let mut chain = StateHash::of_bytes(&file).0;
@@ -66,7 +66,7 @@ impl Forged {
     }
 }
 
-/// With all checksums repaired.
+/// Bytes of a file after a change, with all checksums repaired.
 pub(crate) fn forge(file: &[u8], change: impl FnOnce(&mut Forged)) -> Vec<u8> {
     let mut forged = Forged::take_apart(file);
     change(&mut forged);

@@ -7,7 +7,7 @@ use lockstep2d::replay::{Flaw, Limits, Recording, Step, Verdict, VerifiedReplay}
 use crate::counter::{Counter, add, inputs_at, setup};
 use crate::{record, verdict};
 
-/// Simulated without a replay.
+/// Hash of a game that is simulated without a replay.
 fn hash_after(ticks: u64) -> StateHash {
     let mut game = Counter::new(&setup()).unwrap();
     for tick in 0..ticks {
@@ -100,7 +100,7 @@ fn a_replay_can_be_stopped_at_any_tick() {
     assert_eq!(replay.conclude(), Verdict::Incomplete { ticks: 34, hash: hash_after(34) });
 }
 
-/// Four ticks of the counter, and a checkpoint every three ticks.
+/// The recording has four ticks of the counter, and a checkpoint every three ticks.
 #[test]
 fn the_bytes_are_those_of_the_document() {
     let mut recording = Recording::<Counter>::start(&setup(), 3).unwrap();

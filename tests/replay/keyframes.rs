@@ -1,4 +1,4 @@
-//! A seek starts from a stored state. No keyframe file that is invalid or of another replay is used.
+//! A seek starts from a stored state. A keyframe file that is invalid or belongs to another replay is not used.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -29,7 +29,8 @@ fn keyframes_of_a_file_spare_the_way() {
         assert_eq!((timeline.played(), timeline.tick()), (400, tick));
         assert!((360..440).contains(&(timeline.simulated() - before)), "expected all ticks and the way back");
     }
-    // A requested interval is rounded up to a multiple of the file's 40 ticks, of which keyframes are used.
+    // Keyframes are 40 ticks apart in the file. A requested interval is rounded up to a multiple of that, and only the
+    // keyframes at its multiples are used.
     for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {
         let mut timeline = open::<Sandbox>(&file, interval, 64 << 20);
         timeline.use_keyframes(&bytes).unwrap();
@@ -48,7 +49,7 @@ fn keyframes_of_an_interval_within_blocks_are_those_at_checkpoints() {
     assert_eq!(timeline.keyframes().collect::<Vec<_>>(), [0, 20, 40, 60, 80, 100]);
 }
 
-/// As `docs/FORMAT.md` specifies, without the library.
+/// Writes a keyframe file as `docs/FORMAT.md` specifies, without the library.
 fn keyframes(replay: &[u8], interval: u64, saves: &[(u64, Counter)]) -> Vec<u8> {
     let saves: Vec<(u64, Vec<u8>)> = saves.iter().map(|(tick, save)| (*tick, codec::encode(save))).collect();
     of_body(&(("counter", 3u32), StateHash::of_bytes(replay), interval, saves))
@@ -124,7 +125,7 @@ fn what_is_no_file_of_keyframes_is_refused() {
     }
 }
 
-/// A forger cannot match the replay's checkpoints.
+/// A forged keyframe does not fit the replay's checkpoints.
 #[test]
 fn a_keyframe_with_another_state_is_found_when_it_is_used() {
     let file = record(35, 10, inputs_at);

@@ -13,7 +13,7 @@ fn verdict(file: &[u8], limits: &Limits) -> Verdict {
     verify::<Counter>(file, limits)
 }
 
-/// The limit that is needed suffices, and one less does not.
+/// A limit equal to the needed value suffices, and one less does not.
 fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Limits, u64)) {
     let mut limits = Limits::default();
     set(&mut limits, needed);
@@ -68,7 +68,7 @@ fn limits_come_before_the_rest_of_the_file() {
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 
-/// Bytes that this thread holds, and their peak.
+/// Counts the bytes that this thread holds, and their peak.
 struct Counting;
 
 thread_local! {
@@ -97,7 +97,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// In bytes.
+/// Largest number of bytes that `work` holds.
 fn most_held(work: impl FnOnce()) -> usize {
     let before = HELD.get();
     MOST.set(before);
@@ -116,7 +116,7 @@ fn memory_follows_the_file_and_not_its_length_fields() {
         let took = most_held(|| drop(verdict(damaged, &Limits::default())));
         assert!(took < bound, "{took} bytes for {what}");
     };
-    // A huge number at every place, without and with repaired checksums.
+    // Writes a huge number at every place, without and with repaired checksums.
     for high in [0x7f, 0x3f, 0x00] {
         let huge = [0xff, 0xff, 0xff, high];
         for at in 0..file.len() - 4 {

@@ -1,4 +1,4 @@
-//! Positions and offsets of errors are right, and limits of header fields exact.
+//! Positions and offsets of errors are right. Limits of header fields are exact.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::SetupError;
@@ -43,7 +43,7 @@ fn a_refused_setup_says_why() {
     assert_eq!(error.to_string(), "the setup cannot start a game: no floor");
 }
 
-/// A replay with another rules name.
+/// A replay whose header names other rules.
 fn with_name(name: &str) -> Vec<u8> {
     forge(&record(5, 3, inputs_at), |forged| {
         let length = u32::from_le_bytes(forged.header[32..36].try_into().unwrap()) as usize;

@@ -1,5 +1,5 @@
-//! The recorder returns its bytes while the game runs, steps with inputs as encoded, and writes nothing that a verifier
-//! would refuse.
+//! The recorder returns its bytes while the game runs and steps the game with inputs as a replay encodes them. It
+//! writes nothing that a verifier would refuse.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, InputError, RulesId, SetupError};
@@ -89,7 +89,7 @@ fn what_cannot_start_is_refused() {
     assert_eq!(refused(&long, 10), RecordError::SetupLength { bytes: (17 << 20) + 12 });
 }
 
-/// Text as input, so that a block can grow, and claims from the setup.
+/// A game with text as input, so that a block can grow, and with claims from the setup.
 struct Scribe {
     claims: Vec<(String, i64)>,
 }

@@ -28,7 +28,7 @@ fn setup() -> SandboxSetup {
     SandboxSetup { config: Config::default(), commands }
 }
 
-/// Every command on a body, with values that may be refused.
+/// Commands of every kind on a body, with values that may be refused.
 fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
     let vector = Vec2::new(value, value.saturating_neg());
     let position = world.body(body).map_or(Vec2::ZERO, |body| body.position());
@@ -118,7 +118,7 @@ fn many_bodies_in_one_command_are_work() {
     assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
 }
 
-/// Overlapping bodies cost far more work.
+/// A crowded tick costs far more work if the bodies overlap.
 #[test]
 fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {

@@ -48,7 +48,7 @@ impl<S: Serialize + DeserializeOwned> Game for Still<S> {
     }
 }
 
-/// Increases each time it is decoded.
+/// A setup whose value increases each time it is decoded.
 #[derive(Serialize)]
 struct Growing(u8);
 

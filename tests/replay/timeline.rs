@@ -1,4 +1,4 @@
-//! A seek finds the state of a playback without seeks, and simulates at most two intervals within a memory budget.
+//! A seek finds the state of a playback without seeks. It simulates at most two intervals, within a memory budget.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -50,7 +50,8 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // Room for all keyframes, for a hundred, and intervals that are not multiples of the block length.
+    // The cases have room for all keyframes, room for about a hundred, and intervals that are not multiples of the
+    // block length.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
         assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");
@@ -123,7 +124,7 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // Room for about 100 keyframes, and for 30 saves for stepping backwards.
+    // There is room for about 100 keyframes, and for 30 saves for stepping backwards.
     let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
@@ -190,7 +191,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // Three units a tick, and 102 for one tick. Repeated ticks must not count again.
+    // A tick costs three units, and one tick costs 102. Repeated ticks must not count again.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {

@@ -22,7 +22,7 @@ thread_local! {
     static STEPS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Counts its steps.
+/// A yard that counts its steps.
 struct Faulty<const FAULTY: bool>(Yard);
 
 impl<const FAULTY: bool> Faulty<FAULTY> {
@@ -90,7 +90,7 @@ fn inputs(tick: u64) -> Vec<u8> {
     (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
 }
 
-/// A flip that changes the state, and the path of its body.
+/// A random flip that changes the state, and the path of its body.
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
@@ -127,7 +127,7 @@ fn evidence(bytes: Vec<u8>) -> Evidence {
     Evidence::read(bytes, &Limits::default()).unwrap()
 }
 
-/// Blamed subject and field.
+/// Path of the blamed subject, and name of its field.
 fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());
@@ -159,7 +159,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(found.stage, Some(stage), "{what}");
         assert_eq!(culprit(&found), (path.clone(), flip.field.name().into()), "{what}");
     });
-    // In every field, before and after the step.
+    // The flips covered every field, before and after the step.
     let drawn = drawn.into_inner().unwrap();
     assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();
@@ -183,7 +183,7 @@ fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
     assert!(last < flip.tick && flip.tick <= first && first == last + 60, "{found:?}");
     assert!(found.notes.last().unwrap().contains("a trace of them"), "{found:?}");
 
-    // The faulty program simulates its own replay.
+    // The faulty program simulates the replay that it has recorded.
     let trace = Trace::<Faulty<true>>::of_replay(&replay, &limits, first, 60).unwrap();
     assert_eq!((trace.tick(), trace.history().len()), (first, 61));
     let found = bisect::<Sound>(&evidence(trace.to_bytes()), None, &limits).unwrap();
@@ -262,14 +262,14 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     });
 }
 
-/// Inputs may differ earlier.
+/// The inputs may differ in an earlier tick.
 #[test]
 fn replays_whose_states_meet_again_part_where_every_tick_says_so() {
     let record = |kicks: &[(u64, i32)]| {
         let mut recording = Recording::<Sandbox>::start(&sandbox(0), 60).unwrap();
         for now in 0..120 {
             let kick = kicks.iter().find(|(tick, _)| *tick == now);
-            // Kick 0 sets the current gravity: different inputs, equal states.
+            // Kick 0 sets gravity to its current value: the inputs differ, and the states are equal.
             let commands = match kick {
                 Some((_, 0)) => {
                     vec![Command::SetGravity { gravity: recording.game().world().config().gravity }]

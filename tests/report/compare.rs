@@ -21,7 +21,8 @@ pub(crate) fn compared(a: &Evidence, b: &Evidence) -> Comparison {
     compare::<Yard>(a, b, &Limits::default()).unwrap()
 }
 
-/// Simulates until seven ticks after a checkpoint that differs.
+/// Simulates until a checkpoint differs, and seven ticks more. Returns the reports, or `None` if no checkpoint up to
+/// `until` differs.
 fn reports(peers: &mut [Peer; 3], until: u64) -> Option<[DesyncReport; 3]> {
     let mut found = None;
     while peers[0].tick < until {
@@ -64,7 +65,8 @@ fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     Some((field, explanation.bit))
 }
 
-/// A rolling ball may move on equally whether its velocity or its spin was changed; no comparison can tell.
+/// State after the tick of a flip. A rolling ball may move on equally whether its velocity or its spin was changed, and
+/// no comparison can tell which.
 fn state_after(seed: u64, flip: Flip) -> StateHash {
     let mut peer = Peer::new(seed, Some(flip));
     while peer.tick < flip.tick {
@@ -73,8 +75,8 @@ fn state_after(seed: u64, flip: Flip) -> StateHash {
     peer.game.state_hash()
 }
 
-/// Compares `count` faulty peers, trying every `stride`th flip. At most one in twenty may be explained by another flip
-/// with the same effect. Returns the number of flips without a difference.
+/// Compares `count` faulty peers, and skips flips that are no multiple of `stride`. At most one in twenty may be
+/// explained by another flip with the same effect. Returns the number of flips without a difference.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;
@@ -104,7 +106,7 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
         assert_eq!(found.trajectories[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
         assert_eq!(found.tick, Some(flip.tick), "{what}");
         let first = &found.subjects[0];
-        // The step may have restored the body, and changed contacts.
+        // The step may have restored the body after other bodies or contacts were affected.
         let is_restored = found.subjects.iter().all(|subject| subject.path != body);
         assert!(!is_restored || when == When::Before, "{what}");
         if !is_restored {
@@ -118,12 +120,12 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
                 assert_eq!(flipped_bits(&first.differences[0]), 1, "{what}");
                 &first.differences[0]
             }
-            // Other bodies are unaffected.
+            // Without an explanation, no other body is affected.
             When::Before if found.explanation.is_none() => {
                 assert_eq!((found.subjects.len(), first.differences.len()), (1, 1), "{what}");
                 &first.differences[0]
             }
-            // The step may have restored the field and changed others.
+            // The step may have restored the flipped field and changed other fields.
             When::Before => {
                 let explanation = found.explanation.as_ref().expect(&what);
                 assert_eq!((explanation.tick, &explanation.path), (flip.tick - 1, &body), "{what}");
@@ -157,8 +159,8 @@ fn a_bit_that_flips_after_a_step_is_found() {
     cases(1, count, When::After, stride);
 }
 
-/// All that touches the body differs in one tick, so that the comparison tries all bits. Fewer than half of the flips
-/// leave no difference.
+/// The comparison has to try all bits, because one tick later everything that touches the body differs. Fewer than half
+/// of the flips leave no difference.
 fn check_flips_before_a_step(seed: u64) {
     let (count, stride) = sweep::size((50, 1), (10, 5));
     let swallowed = cases(seed, count, When::Before, stride);
@@ -187,7 +189,7 @@ fn peers_that_agree_are_equal() {
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }
 
-/// A replay has checkpoints only: no tick and no fields are found.
+/// A replay has checkpoints, but no states: the comparison finds neither the tick nor the fields.
 #[test]
 fn replays_tell_who_diverged_between_which_checkpoints() {
     let flip = Flip { tick: 60, when: When::After, body: 9, field: BodyField::VelocityY, bit: 12 };
@@ -205,7 +207,7 @@ fn replays_tell_who_diverged_between_which_checkpoints() {
     assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
     assert_eq!(found.subjects.len(), 1, "{:?}", found.subjects);
 
-    // The correct peer's report has correct states only.
+    // The correct peer's report has no state of the diverged peer.
     let report = peers[0].report(0, 75, Vec::new());
     let found = compared(&evidence(&report), &replays[1]);
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));

@@ -44,7 +44,7 @@ fn a_report_comes_back() {
     assert_eq!(report.saves_left_out(), 0);
 }
 
-/// Saves nearest to the differing checkpoint are kept first.
+/// Saves near the differing checkpoint are kept. Distant saves are left out first.
 #[test]
 fn a_report_that_would_be_large_leaves_saves_out() {
     let peer = peer();

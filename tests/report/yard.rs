@@ -118,14 +118,14 @@ pub(crate) enum When {
 pub(crate) struct Flip {
     pub(crate) tick: u64,
     pub(crate) when: When,
-    /// Among the dynamic bodies.
+    /// Number of the body among the dynamic bodies.
     pub(crate) body: usize,
     pub(crate) field: BodyField,
     pub(crate) bit: u32,
 }
 
 impl Flip {
-    /// Returns the body's path, or `None` if the world refuses the flip.
+    /// Flips the bit. Returns the body's path, or `None` if the world refuses the flip.
     pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
         let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
         game.world.flip_bit(body, self.field, self.bit).ok()?;
@@ -154,7 +154,7 @@ impl Peer {
         Peer { game, history, recorder, replay, flip, tick: 0, flipped: None }
     }
 
-    /// Without recording it.
+    /// Simulates a tick without recording it.
     fn play(&mut self, inputs: &[u8]) {
         let next = self.tick + 1;
         let flip = |when| move |flip: &Flip| flip.tick == next && flip.when == when;

@@ -14,7 +14,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// Feet are at `y = -0.7`.
+/// Shapes with their feet at `y = -0.7`.
 fn shapes() -> [(&'static str, Geometry); 4] {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     let sharp = Polygon::rectangle(fx!(0.3), fx!(0.7)).expect("valid");
@@ -27,24 +27,24 @@ fn world(tick_rate: u32) -> World {
     World::new(Config { tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// In m/s, per tick.
+/// Change of velocity by gravity in a tick, in m/s.
 fn fall(tick_rate: u32) -> Fx {
     fx!(10) / i64::from(tick_rate)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Platform {
-    /// Changes its velocity at random times.
+    /// A platform that changes its velocity at random times.
     Lift,
-    /// Moved by `World::move_to` along an ellipse.
+    /// A platform that `World::move_to` moves along an ellipse.
     Ellipse,
-    /// Turns to and fro about its middle.
+    /// A platform that turns to and fro about its middle.
     Turning,
     /// Flush plates that move together.
     Train,
-    /// Turns to and fro below the character.
+    /// A wheel that turns to and fro below the character.
     Wheel,
-    /// A belt that moves on a lift.
+    /// A belt that moves like a lift.
     Belt,
 }
 
@@ -57,9 +57,9 @@ struct Ride {
     platform: Platform,
     rng: Rng,
     velocity: Vec2<Fx>,
-    /// In metres.
+    /// Half-axes of the ellipse in metres.
     size: Vec2<Fx>,
-    /// In 1/s, also for turning to and fro.
+    /// Turns per second along the ellipse, or swings per second.
     turns: Fx,
 }
 
@@ -91,7 +91,7 @@ impl Ride {
             self.velocity = at(self.rng.range(fx!(-5), fx!(5)), self.rng.range(fx!(-5), fx!(5)));
         }
         let (sin, cos) = (Fx::from(phase.sin()), Fx::from(phase.cos()));
-        // At most 20 degrees to each side.
+        // The platform swings by at most 20 degrees to each side.
         let swing = fx_mul(fx_mul(fx!(0.349), fx_mul(self.turns, fx!(6.2832))), cos);
         let (velocity, spin) = match self.platform {
             Platform::Lift | Platform::Train | Platform::Belt => (self.velocity, fx!(0)),
@@ -107,7 +107,7 @@ impl Ride {
     }
 }
 
-/// Walks to and fro near the middle of the platform.
+/// The character walks to and fro near the middle of the platform.
 fn ride((platform, (name, geometry), tick_rate, seed): (Platform, (&str, Geometry), u32, u64)) {
     let what = format!("{platform:?}, {name}, {tick_rate} Hz, seed {seed}");
     let mut ride = Ride::new(platform, tick_rate, seed);
@@ -212,7 +212,7 @@ fn a_belt_carries_at_its_speed() {
     }
 }
 
-/// Stairs and slopes between two walls.
+/// Corners of stairs and slopes between two walls.
 fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     let mut points = vec![at(fx!(-3), fx!(4)), at(fx!(-3), fx!(0)), at(fx!(0), fx!(0))];
     let (mut x, mut y) = (fx!(0), fx!(0));
@@ -232,7 +232,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // Otherwise a step would be higher than its nominal height for feet that are still on the slope.
+        // Without this stretch, a step would be higher than its nominal height for feet that are still on the slope.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }
@@ -240,7 +240,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// To the right wall and back.
+/// The character walks to the right wall and back.
 fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let (name, geometry) = shape;
     let mut rng = Rng::new(seed);
@@ -255,7 +255,7 @@ fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let end = points[points.len() - 1].x;
     for (direction, wall) in [(fx!(1), end), (fx!(-1), fx!(-3))] {
         let way = fx_div(end + fx!(9), speed).expect("a speed");
-        // Twice the time, because climbing adds to the path.
+        // The time is twice that of a level path, because climbing adds to the path.
         let ticks = (way * i64::from(tick_rate) * 2).to_num::<u32>();
         for tick in 0..ticks {
             state.velocity = at(fx_mul(direction, speed), state.velocity.y - fall(tick_rate));

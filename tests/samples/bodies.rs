@@ -30,7 +30,7 @@ fn a_jointed_platform_changes_its_kind() {
     stage.run(60);
     near(stage.place(platform).x, start.x + fx!(3), fx!(0.000001));
     assert_eq!(stage.place(platform).y, start.y);
-    // Friction 0.6 takes half a second to 3 m/s.
+    // Friction 0.6 accelerates the load to 3 m/s in half a second.
     near(stage.velocity(load).x, fx!(3), fx!(0.01));
 
     stage.world.set_kind(platform, BodyKind::Fixed).expect("valid");
@@ -64,7 +64,7 @@ fn a_weeble_rights_itself() {
     stage.run_and(900, |stage| tilt = tilt.max(stage.angle(weeble).abs()));
     assert!(tilt > fx!(0.1), "expected the explosion to tilt it, by {tilt} rad");
     near(stage.angle(weeble), fx!(0), fx!(0.05));
-    // v + w x r.
+    // The velocity of a point is v + w x r.
     stage.world.set_velocity(weeble, at!(1, 2), fx!(3)).expect("valid");
     let body = stage.body(weeble);
     let point = body.centre_of_mass() + at!(0.5, 2);
@@ -82,7 +82,7 @@ fn sleepers_wait_to_be_woken() {
         stage.spawn(BodyDef::dynamic().position(at!(0, 3)).asleep().never_sleeps(), &[ball(fx!(1))]);
     let lower = stage.spawn(BodyDef::dynamic().position(at!(5, 1)).asleep(), &[square(fx!(1))]);
     let upper = stage.add(at!(5, 5), square(fx!(0.5)));
-    // Above the solid part of the sleeper, through its sensor.
+    // The ball flies above the solid part of the sleeper, through its sensor.
     let def = BodyDef::dynamic().position(at!(-4, 3.8)).gravity_scale(fx!(0)).velocity((fx!(6), fx!(0)));
     let visitor = stage.spawn(def, &[ball(fx!(0.1))]);
     let (mut begins, mut ends, mut woken) = (0, 0, false);
@@ -118,7 +118,7 @@ fn a_long_pendulum_does_not_fall_asleep_at_its_turning_point() {
     near(stage.angle(pendulum), -fx!(1.5708), fx!(0.02));
 }
 
-/// Sample "Bad". A dynamic body without mass coasts like a kinematic one.
+/// Sample "Bad". A dynamic body without mass keeps its velocity like a kinematic body.
 #[test]
 fn a_body_without_mass_coasts() {
     let mut stage = Stage::with_floor();
@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Sample "Pivot". The lower end is at rest at first.
+/// Sample "Pivot". At first, the lower end is at rest.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();

@@ -34,7 +34,7 @@ fn a_bullet_bounces_in_a_room() {
         });
         if is_ball {
             near(stage.velocity(body).length(), fx!(22.3607), fx!(0.02));
-            // In 20 s, 200 m along one axis and 400 m along the other, 19 m from wall to wall.
+            // In 20 s, the ball moves 200 m along one axis and 400 m along the other. It has 19 m of room along each.
             assert!((29..=33).contains(&hits), "{hits} hits");
         }
     }
@@ -174,7 +174,7 @@ fn what_passes_by_is_not_touched() {
     );
     let def = BodyDef::dynamic().position(at!(0.015, 2.515)).velocity(at!(7.5, -7.5)).gravity_scale(fx!(0));
     let body = stage.spawn(def, &[square(fx!(0.25))]);
-    // Level with the edge after 0.169 s, 3 cm beside it, and at the floor after 0.302 s.
+    // After 0.169 s the box is level with the edge and 3 cm beside it. After 0.302 s it is at the floor.
     stage.run_and(17, |stage| assert_eq!(stage.velocity(body), at!(7.5, -7.5)));
     near(stage.place(body).y, fx!(0.39), fx!(0.00001));
 
@@ -241,7 +241,7 @@ fn a_dropped_box_does_not_sink_in() {
             stage.spawn(BodyDef::dynamic().position(place).angle(tilt), &[square(fx!(0.5))]);
             stage.run_and(90, |stage| {
                 let overlap = stage.world.deepest_overlap();
-                // Box2D's slop of 5 mm plus 1 mm. Contacts of the default settings have no slop.
+                // The bound is Box2D's slop of 5 mm plus 1 mm. Contacts of the default settings have no slop.
                 assert!(overlap < fx!(0.006), "{overlap} m after {height} m");
             });
         }
@@ -296,8 +296,8 @@ fn a_ball_rests_in_a_wedge() {
             ball(fx!(0.3)).friction(fx!(0.2)),
         );
         stage.run(1200);
-        // The walls enclose atan(0.5), 26.57 degrees. The centre is 0.3 m from the upright wall, at 0.3 / tan(13.28
-        // degrees).
+        // The walls enclose atan(0.5), 26.57 degrees. The centre is 0.3 m from the upright wall, and 0.3 / tan(13.28
+        // degrees) above the lowest point.
         near(stage.place(body).x, fx!(-0.3), fx!(0.005));
         near(stage.place(body).y, fx!(1.271), fx!(0.02));
         assert!(stage.velocity(body).length() < fx!(0.01));

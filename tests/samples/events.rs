@@ -1,4 +1,4 @@
-//! Box2D's group "Events". `joints.rs` has its sample Joint.
+//! Box2D's group "Events". The sample "Joint" of this group is in `joints.rs`.
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, Filter, MassSource, ShapeDef};
 use lockstep2d::fx;
@@ -58,11 +58,11 @@ fn a_funnel_empties_into_its_sensor() {
         }
     }
     assert_eq!((dropped, caught), (20, 20));
-    // The funnel and its three paddles.
+    // Only the funnel and its three paddles are left.
     assert_eq!(stage.world.body_count(), 4);
 }
 
-/// Sample "Sensor Bookend". A visit ends by leaving, disabling or removing either side.
+/// Sample "Sensor Bookend". A visit ends when the sensor or the visitor leaves, is disabled or is removed.
 #[test]
 fn every_begin_has_its_end() {
     for ending in 0..5 {
@@ -89,7 +89,7 @@ fn every_begin_has_its_end() {
                     }
                 }
             }
-            // Both sensors have an open overlap with each other, or neither.
+            // Two sensors that overlap report each other: both have an open overlap with the other one, or neither has.
             let mutual = open.iter().filter(|(sensor, visitor)| {
                 let is_sensor = |id| stage.world.shape(id).is_some_and(|shape| shape.is_sensor());
                 is_sensor(*sensor) && is_sensor(*visitor)
@@ -128,7 +128,7 @@ fn a_foot_sensor_knows_the_ground() {
     let player = stage.spawn(BodyDef::dynamic().position(at!(0.5, 1)).lock_rotation(), &[body, sole]);
     let sole = *stage.world.shapes_of(player).last().expect("two shapes");
     stage.run(60);
-    // 1 m wide, half a metre to each side of the middle of a link.
+    // The sole is 1 m wide. It reaches half a metre to each side of the middle of a link.
     let under = stage.world.sensor_overlaps(sole).len();
     assert!((1..=3).contains(&under), "{under} links");
     stage.world.set_velocity(player, at!(0, 5), fx!(0)).expect("valid");
@@ -138,12 +138,12 @@ fn a_foot_sensor_knows_the_ground() {
         assert!(!lifted || stage.world.sensor_overlaps(sole).is_empty());
         in_the_air += i32::from(lifted);
     });
-    // 5 m/s are above 0.3 m for sqrt(25 - 6) / 5 seconds.
+    // A jump at 5 m/s is above 0.3 m for sqrt(25 - 6) / 5 seconds.
     assert!((50..=54).contains(&in_the_air), "{in_the_air} ticks");
     assert!(!stage.world.sensor_overlaps(sole).is_empty());
 }
 
-/// Sample "Contact". A part that touches the wall is lost.
+/// Sample "Contact". A part of the player that touches the wall is lost.
 #[test]
 fn what_touches_the_player_becomes_a_part_of_it() {
     let mut stage = Stage::weightless();
@@ -252,7 +252,8 @@ fn sensors_of_every_kind_of_body_detect() {
         }
     });
     assert_eq!(order, eyes);
-    // Neither the solid part of the sensor's own body is a visitor, nor the ground, whose mask excludes the sensor.
+    // The sensor does not report the solid part of its own body. It does not report the ground either, whose mask
+    // excludes the sensor.
     assert_eq!(stage.world.sensor_overlaps(eyes[2]).iter().filter(|&&id| id != visitor).count(), 0);
 }
 
@@ -340,14 +341,15 @@ fn a_projectile_explodes_on_impact() {
         break;
     }
     let (centre, _) = at.expect("a hit");
-    // It hits after a quarter of a tick, and pushes the box ahead for the rest: by 0.75 / 60 s x 60 m/s x 0.2 / 1.2.
+    // The projectile hits after a quarter of a tick, and pushes the box ahead for the rest of the tick: by 0.75 / 60 s
+    // x 60 m/s x 0.2 / 1.2.
     assert!(centre.x > fx!(7.2) && centre.x < fx!(7.25) + fx!(0.125), "exploded at {centre:?}");
     assert!(stage.world.body(shot).is_none());
     stage.run(180);
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Sample "Circle Impulse": 1 kg at 25 m/s.
+/// Sample "Circle Impulse": a circle of 1 kg at 25 m/s.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {

@@ -10,12 +10,12 @@ use lockstep2d::solver::{
 
 use super::{Stage, ball, capsule, near, num, rect, square};
 
-/// At 45 degrees.
+/// Unit vector at 45 degrees.
 fn diagonal() -> Vec2<Fx> {
     at!(0.70710678, 0.70710678)
 }
 
-/// A spring yields by `g / (2 pi f)^2`.
+/// Displacement `g / (2 pi f)^2` by which a spring yields to a weight.
 fn sag(gravity: Fx, hertz: Fx) -> Fx {
     let omega = fx_mul(lockstep2d::math::PI * 2, hertz);
     fx_div(gravity, fx_mul(omega, omega)).expect("positive")
@@ -67,8 +67,8 @@ fn a_distance_joint_is_a_spring_with_limits() {
     // The ball weighs 39.3 N. A spring that only pushes does not hold it: h = g t^2 / 2.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
-    // This spring pulls with at most half the weight, which it reaches when stretched by half its sag, after a sixth of
-    // its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s².
+    // This spring pulls with at most half the weight. It reaches this force when stretched by half its sag, after a
+    // sixth of its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s².
     let fallen =
         hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(-19.635), fx!(100)), 60);
     near(fallen, fx!(3.61), fx!(0.03));
@@ -93,10 +93,10 @@ fn a_motor_joint_follows_its_target() {
         let place = Vec2::new(widen((time + time).sin()) * 6, fx!(8) + widen(time.sin()) * 4);
         stage.world.move_to(target, place, time + time).expect("in range");
         stage.run(1);
-        // The target accelerates by at most 24 m/s² along x and 4 m/s² along y: with gravity sqrt(24^2 + 14^2) = 28
-        // m/s².
+        // The target accelerates by at most 24 m/s² along x and 4 m/s² along y. With gravity this is sqrt(24^2 + 14^2)
+        // = 28 m/s².
         let bound = sag(fx!(28), fx!(4)) * 2;
-        // The target starts with 12 m/s at once.
+        // In the first second the bound does not hold, because the target starts with 12 m/s at once.
         assert!(
             tick < 60 || stage.place(body).distance(place) < bound,
             "tick {tick}: {:?} of {place:?}",
@@ -107,7 +107,7 @@ fn a_motor_joint_follows_its_target() {
     assert!(stage.world.joint_force(joint).is_some_and(|(force, _)| force.length() < fx!(5000)));
 }
 
-/// Sample "Top Down Friction". 10 N stop 1 kg at 5 m/s after half a second and 1.25 m.
+/// Sample "Top Down Friction". A friction of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m.
 #[test]
 fn a_motor_joint_is_friction_seen_from_above() {
     let mut stage = Stage::weightless();
@@ -116,7 +116,7 @@ fn a_motor_joint_is_friction_seen_from_above() {
     let body = stage.spawn(def, &[square(fx!(0.5))]);
     let motor = Motor::new().linear(Vec2::ZERO, fx!(10)).angular(fx!(0), fx!(1));
     stage.join(JointDef::new(ground, body, motor).colliding());
-    // 1 N m stops 6 rad/s after a second: the inertia is 1/6 kg m².
+    // A friction of 1 N m stops 6 rad/s after a second: the inertia is 1/6 kg m².
     stage.run(30);
     near(stage.velocity(body).length(), fx!(0), fx!(0.01));
     near(stage.body(body).angular_velocity(), fx!(3), fx!(0.01));
@@ -173,7 +173,7 @@ fn a_hinge_has_motor_limit_and_spring() {
     let lever = stage.add(at!(20, 10), rect(fx!(10), fx!(0.5)).offset(at!(-10, 0)));
     let kind = Revolute::new().limit(fx!(-0.7854), fx!(0)).motor(fx!(0), fx!(1000));
     let joint = stage.join_at(ground, lever, kind, at!(19, 10));
-    // 200 N at 9 m overcome the motor, counter-clockwise to the upper limit of 0.
+    // A force of 200 N at 9 m overcomes the motor, and turns the body counter-clockwise to the upper limit of 0.
     stage.run(120);
     near(stage.world.joint_angle(joint).expect("there"), fx!(0), fx!(0.01));
     let (_, motor) = stage.world.joint_part_force(joint, JointPart::Motor).expect("there");
@@ -201,12 +201,12 @@ fn a_slider_stays_on_its_axis() {
         stage.world.joint_translation(joint).expect("there").x
     };
     let limited = Prismatic::new().limit(fx!(-10), fx!(10));
-    // g sin(45 degrees) t^2 / 2.
+    // The body slides by g sin(45 degrees) t^2 / 2.
     near(slide(limited, 60), fx!(-3.5355), fx!(0.07));
     near(slide(limited, 600), fx!(-10), fx!(0.01));
-    // 4 kg pull with 28.28 N along the axis. 25 N leave 0.8211 m/s².
+    // The weight of 4 kg pulls with 28.28 N along the axis. A motor of 25 N leaves 0.8211 m/s².
     near(slide(limited.motor(fx!(2), fx!(25)), 120), fx!(-1.642), fx!(0.03));
-    // 100 N accelerate by a = 17.9 m/s² up to v = 2 m/s: 2 s * v - v^2 / 2 a in 2 s.
+    // A motor of 100 N accelerates by a = 17.9 m/s² up to v = 2 m/s. In 2 s the body moves by 2 s * v - v^2 / 2 a.
     near(slide(limited.motor(fx!(2), fx!(100)), 120), fx!(3.888), fx!(0.02));
     near(slide(limited.spring(fx!(1), fx!(0.5), fx!(0)), 900), -sag(fx!(7.0711), fx!(1)), fx!(0.002));
 }
@@ -226,7 +226,7 @@ fn a_wheel_turns_on_its_spring() {
     near(stage.body(wheel).angular_velocity(), fx!(2), fx!(0.001));
 }
 
-/// A box of 4 kg for each of six kinds of joints, joined to a fixed body.
+/// Boxes of 4 kg, joined to a fixed body by joints of six kinds.
 fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> JointDef) -> Vec<BodyId> {
     let ground = stage.spawn(BodyDef::fixed(), &[]);
     let wheel = Wheel::new().spring(fx!(1), fx!(0.7), fx!(0)).limit(fx!(-1), fx!(1)).motor(fx!(1), fx!(10));
@@ -269,8 +269,8 @@ fn locks_and_joints_agree() {
     }
 }
 
-/// Samples "Breakable" and, of the group "Events", "Joint". A box weighs 40 N. Swinging on a hinge it loads `m g (1 + 2
-/// r^2 / (r^2 + k^2)) = 88 N` at the lowest point.
+/// Samples "Breakable" and, of the group "Events", "Joint". A box weighs 40 N. When it swings on a hinge, the load at
+/// the lowest point is `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N`.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -314,7 +314,7 @@ fn joints_close_after_a_blow() {
     }
 }
 
-/// Sample "User Constraint". Ropes are impulses between the ticks.
+/// Sample "User Constraint". Ropes are impulses that the test applies between the ticks.
 #[test]
 fn a_constraint_of_ones_own_holds_a_box() {
     let mut stage = Stage::new();
@@ -322,7 +322,7 @@ fn a_constraint_of_ones_own_holds_a_box() {
     let body = stage.spawn(def, &[rect(fx!(1), fx!(0.5)).density(fx!(20))]);
     let (hook, corners) = (at!(3, 0), [at!(1, -0.5), at!(1, 0.5)]);
     let rope = |stage: &Stage, corner: Vec2<Fx>| hook.distance(stage.body(body).transform().apply(corner));
-    // A spring of 3 Hz for half of the 40 kg, damped with 0.7, that only pulls.
+    // The rope is a spring of 3 Hz for half of the 40 kg, damped with 0.7, that only pulls.
     let stiffness = fx!(20) * 355;
     let damping = fx!(20) * 26;
     for _ in 0..3600 {
@@ -343,7 +343,7 @@ fn a_constraint_of_ones_own_holds_a_box() {
             stage.world.apply_impulse(body, impulse, end).expect("valid");
         }
     }
-    // The ropes carry 400 N evenly, each at asin(0.5 / length) from the vertical.
+    // The two ropes carry 400 N evenly, each at asin(0.5 / length) from the vertical.
     for corner in corners {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");

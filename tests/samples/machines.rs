@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": things that are built with joints.
+//! Box2D's group "Joints": machines that are built with joints.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, JointId, ShapeDef};
 use lockstep2d::fx;
@@ -52,12 +52,12 @@ fn a_chain_holds_a_heavy_ball() {
     let start = stage.energy();
     stage.run_and(1200, |stage| {
         assert!(stage.world.widest_joint_gap() < fx!(0.2), "{} m", stage.world.widest_joint_gap());
-        // A tolerance of 100 J of 300 kJ.
+        // The tolerance is 100 J of 300 kJ.
         assert!(stage.energy() < start + fx!(100), "{} J of {start}", stage.energy());
     });
 }
 
-/// Links of 6 kg and 1 m, welded in a row to the ground. Returns the last one.
+/// Builds links of 6 kg and 1 m, welded in a row to the ground. Returns the last link.
 fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     let mut before = stage.spawn(BodyDef::fixed(), &[]);
     for i in 0..links {
@@ -86,7 +86,7 @@ fn a_stiffer_cantilever_bends_less() {
     stage.run_and(1800, |stage| assert!(stage.energy() <= fx!(1), "{} J of 0", stage.energy()));
 }
 
-/// Two driven wheels on springs.
+/// Builds a car with two driven wheels on springs.
 fn car(stage: &mut Stage, place: Vec2<Fx>, torque: Fx) -> (BodyId, [JointId; 2]) {
     let outline = [at!(-1.3, -0.4), at!(1.3, -0.4), at!(1.3, 0), at!(0, 0.8), at!(-1, 0.8), at!(-1.3, 0.2)];
     let chassis = stage.add(place + at!(0, 1), hull(&outline).friction(fx!(0.2)));
@@ -110,7 +110,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     points.extend((0..).zip(heights).map(|(i, y)| Vec2::new(num(25 + 5 * i), y)));
     points.extend([at!(130, 0), at!(130, 20)]);
     let ground = stage.spawn(BodyDef::fixed(), &Chain::new(&points).links().expect("valid"));
-    // At first it turns, so that its near end is down.
+    // The teeter turns at first, so that its near end goes down.
     let teeter = BodyDef::dynamic().position(at!(95, 1)).angular_velocity(fx!(1));
     let teeter = stage.spawn(teeter, &[rect(fx!(10), fx!(0.25))]);
     let hinge = Revolute::new().limit(fx!(-0.14), fx!(0.14));
@@ -204,7 +204,7 @@ fn doohickeys_hold_together() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Sample "Scissor Lift". The platform moves seven times as fast as the strut: with one iteration, the links would give
+/// Sample "Scissor Lift". The platform moves seven times as fast as the strut. With one iteration, the links would give
 /// way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
@@ -249,12 +249,12 @@ fn a_scissor_lift_rises_level() {
         .join(stiff(JointDef::new(ground, strutted, strut).anchor_a(at!(-2.5, 1.2)).anchor_b(at!(0.5, 0))));
     stage.run_and(240, |stage| {
         near(stage.angle(platform), fx!(0), fx!(0.03));
-        // `3 cos a` along x and `7 sin a` along y.
+        // The strut spans `3 cos a` along x and `7 sin a` along y.
         let length = stage.world.joint_length(strut).expect("there");
         let sine = sqrt((fx_mul(length, length) - fx!(9)) / 40).expect("longer than 3 m");
         near(stage.place(platform).y, fx!(0.6) + sine * 15, fx!(0.1));
     });
-    // From 3.1459 m by 0.25 m/s.
+    // The strut grows from 3.1459 m by 0.25 m/s.
     near(stage.world.joint_length(strut).expect("there"), fx!(4.1459), fx!(0.1));
 }
 
@@ -273,7 +273,8 @@ fn toothed(along: Fx) -> Vec<ShapeDef> {
     shapes
 }
 
-/// Samples "Gear Lift" and, of the group "World", "Far Gate". The result is bit-identical a thousand kilometres away.
+/// Samples "Gear Lift" and, of the group "World", "Far Gate". At a distance of a thousand kilometres from the origin,
+/// the result is bit-identical.
 #[test]
 fn toothed_wheels_lift_a_door() {
     let lift = |origin: Vec2<Fx>| {
@@ -309,7 +310,7 @@ fn toothed_wheels_lift_a_door() {
     };
     let (turned, door, start, gap) = lift(Vec2::ZERO);
     near(turned[0], fx!(-1.2), fx!(0.02));
-    // Equal angles, except for the play of a tooth's width.
+    // The wheels turn by equal angles, except for the play of a tooth's width.
     near(turned[1], fx!(1.2), fx!(0.2));
     assert!(door.y > start.y + fx!(0.8), "the door went from {start:?} to {door:?}");
     assert!(gap < fx!(0.02), "{gap} m");

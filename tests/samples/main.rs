@@ -52,7 +52,7 @@ impl Stage {
         Stage { world: World::new(config).expect("valid settings") }
     }
 
-    /// Before its first tick.
+    /// The world of a scene before its first tick.
     fn of_scene(name: &str) -> Self {
         let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
         let game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
@@ -65,7 +65,7 @@ impl Stage {
         stage
     }
 
-    /// 200 m wide, with its top on the x axis.
+    /// Adds a floor 200 m wide, with its top on the x axis.
     fn floor(&mut self) -> BodyId {
         self.fixed(at!(0, -1), rect(fx!(100), fx!(1)))
     }
@@ -90,7 +90,7 @@ impl Stage {
         self.world.add_joint(&def).expect("a valid joint")
     }
 
-    /// Anchors at one point of the world.
+    /// Adds a joint with both anchors at one point of the world.
     fn join_at(&mut self, a: BodyId, b: BodyId, kind: impl Into<JointKind>, place: Vec2<Fx>) -> JointId {
         let def = self.world.joint_at(a, b, kind, place).expect("bodies of the world");
         self.join(def)
@@ -107,12 +107,12 @@ impl Stage {
         self.join(def)
     }
 
-    /// The solver must not clamp anything.
+    /// Simulates ticks, and expects that the solver clamps nothing.
     fn run(&mut self, ticks: u32) {
         self.run_and(ticks, |_| ());
     }
 
-    /// Calls `look` after each tick.
+    /// Simulates ticks, and calls `look` after each one.
     fn run_and(&mut self, ticks: u32, mut look: impl FnMut(&mut Stage)) {
         for _ in 0..ticks {
             self.world.step();
@@ -134,7 +134,7 @@ impl Stage {
         self.body(id).velocity()
     }
 
-    /// In radians, from -pi to pi.
+    /// Angle in radians, from -pi to pi.
     fn angle(&self, id: BodyId) -> Fx {
         self.body(id).angle().to_radians()
     }
@@ -162,7 +162,7 @@ fn ball(radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::circle(radius).expect("a valid circle"))
 }
 
-/// Half extents.
+/// A rectangle of given half extents.
 fn rect(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("a valid rectangle"))
 }
@@ -171,13 +171,13 @@ fn square(half: Fx) -> ShapeDef {
     rect(half, half)
 }
 
-/// The half extents include the radius.
+/// A rounded rectangle whose half extents include the radius.
 fn rounded(half_width: Fx, half_height: Fx, radius: Fx) -> ShapeDef {
     let core = Polygon::rectangle(half_width - radius, half_height - radius);
     ShapeDef::new(core.and_then(|core| core.rounded(radius)).expect("a valid rectangle"))
 }
 
-/// Lying, from `-half` to `half`.
+/// A capsule along the x axis, from `-half` to `half`.
 fn pill(half: Fx, radius: Fx) -> ShapeDef {
     capsule(Vec2::new(-half, Fx::ZERO), Vec2::new(half, Fx::ZERO), radius)
 }

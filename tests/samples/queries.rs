@@ -31,10 +31,10 @@ fn distances_of_loose_shapes() {
     let found = probe(triangle, at!(0, 2)).distance(&block);
     near(found.distance, fx!(1.5), fx!(0.000001));
     near(found.point_a.y - found.point_b.y, fx!(1.5), fx!(0.000001));
-    // The corners (0.5, 0.5) and (1.5, 1.5) of the core, less the radius of 0.2.
+    // The nearest core corners are (0.5, 0.5) and (1.5, 1.5). The radius of 0.2 reduces their distance.
     let rounded = Polygon::square(fx!(0.5)).and_then(|core| core.rounded(fx!(0.2))).expect("valid");
     near(probe(rounded, at!(2, 2)).distance(&block).distance, fx!(1.21421356), fx!(0.000001));
-    // A corner points down: 2 - 0.70711 - 0.5.
+    // A corner points down: the distance is 2 - 0.70711 - 0.5.
     let square = Polygon::square(fx!(0.5)).expect("valid");
     near(
         probe(square, at!(0, 2)).turned(degrees(45)).distance(&block).distance,
@@ -90,7 +90,7 @@ fn casts_through_a_world() {
     assert!(!stage.world.cast_ray_any(at!(-3, 1), way, all));
     let hits = stage.world.cast_ray_all(from, way, all);
     assert_eq!(hits.iter().map(|hit| hit.shape).collect::<Vec<_>>(), shapes);
-    // The mode "multiple" of the sample.
+    // These hits are those of the sample's mode "multiple".
     assert!(hits.iter().take(3).zip(0..).all(|(hit, i)| hit.point.x == num(2 * i) - fx!(0.5)));
     let first = stage.world.shape(shapes[0]).expect("there").body();
     let others = QueryFilter::default().except(first);
@@ -133,7 +133,7 @@ fn manifolds_of_loose_shapes() {
     let segment = probe(Geometry::segment(at!(-0.5, 0), at!(0.5, 0)).expect("valid"), at!(0, 0));
     let rounded = Polygon::square(fx!(0.4)).and_then(|core| core.rounded(fx!(0.1))).expect("valid");
     let wedge = Polygon::new(&[at!(-0.1, -0.5), at!(0.1, -0.5), at!(0, 0.5)]).expect("valid");
-    // B lies on A.
+    // In each case, B lies on A.
     let cases = [
         ("ball, ball", disc(fx!(0.5), at!(0, 0)), disc(fx!(0.5), at!(0, 1)), 1),
         ("capsule, ball", pill(at!(0, 0)), disc(fx!(0.5), at!(0, 0.75)), 1),
@@ -187,7 +187,7 @@ fn casts_and_times_of_impact_of_loose_shapes() {
     assert!(disc(fx!(0.5), at!(0, 0)).cast(at!(10, 5), &target).is_none());
     let moved = |translation| Displacement { translation, turns: fx!(0) };
     let body = block(fx!(0.5), at!(0, 0));
-    // Approaching by 10 m, with a gap of 4 m.
+    // The shapes approach each other by 10 m, with a gap of 4 m.
     let TimeOfImpact::Hit { fraction } = body.time_of_impact(moved(at!(5, 0)), &target, moved(at!(-5, 0)))
     else {
         panic!("expected a hit");
@@ -277,7 +277,7 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     };
     for tick in 0..360 {
         let (place, velocity, mass) = (stage.place(body), stage.velocity(body), stage.body(body).mass());
-        // A pogo spring of 5 Hz, critically damped, and a drive of 1 m/s.
+        // The leg is a spring of 5 Hz, critically damped. The body is driven at 1 m/s.
         if let Some(height) = height(&stage.world, place) {
             let lift = (rest - height) * 987 - velocity.y.saturating_mul(fx!(62.8)) + fx!(10);
             let drive = (fx!(1) - velocity.x) * 20;
@@ -296,8 +296,8 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     assert!(stage.place(body).x > fx!(5));
 }
 
-/// Sample "Dynamic Mover" with its pogo, a spring to the ground that is created again in every tick. It pushes with at
-/// most three times the weight, and pulls with at most half of it.
+/// Sample "Dynamic Mover" with its pogo, a spring to the ground that is created again in every tick. The pogo pushes
+/// with at most three times the weight, and pulls with at most half of it.
 #[test]
 fn a_pogo_is_a_spring_to_the_ground() {
     let mut stage = Stage::with_floor();
@@ -305,7 +305,7 @@ fn a_pogo_is_a_spring_to_the_ground() {
     let def = BodyDef::dynamic().position(at!(0, 1.5)).lock_rotation().never_sleeps();
     let body = stage.spawn(def, &[capsule(at!(0, -0.3), at!(0, 0.3), fx!(0.3))]);
     let weight = stage.body(body).mass() * 10;
-    // The weight compresses 5 Hz by 10 / (10 pi)^2 m.
+    // The weight compresses a spring of 5 Hz by 10 / (10 pi)^2 m.
     let rest = fx!(1.2);
     let spring = Distance::new().spring(fx!(5), fx!(1), rest + fx!(0.01013));
     let pogo = spring.spring_force(-weight / 2, weight * 3);

@@ -1,4 +1,4 @@
-//! The 2D examples of rapier that are not samples of Box2D as well.
+//! The 2D examples of rapier that Box2D does not have as samples.
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, Filter, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -88,7 +88,7 @@ fn groups_land_on_their_floors() {
 /// Example `damping2`: `v = v0 exp(-c t)`.
 #[test]
 fn damping_is_exponential() {
-    // exp(-c / 2) for c = 1 to 10.
+    // Shares exp(-c / 2) for c = 1 to 10.
     let left = [
         fx!(0.60653),
         fx!(0.36788),
@@ -212,8 +212,8 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// Example `inv_pyramid2`. Each box carries one of twice its size. The lowest box, of 1 kg, carries four boxes, or five
-/// at 120 Hz. At 30 Hz the lowest of six would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
+/// Example `inv_pyramid2`. Each box carries a box of twice its size. The lowest box, of 1 kg, carries four boxes, or
+/// five with contacts of 120 Hz. At 30 Hz the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {
@@ -235,8 +235,8 @@ fn an_inverted_pyramid_stands() {
     }
 }
 
-/// Example `one_way_platforms2`. A body rides a belt that is solid from above. Reversed gravity pulls it to the lower
-/// side of a second one.
+/// Example `one_way_platforms2`. A body rides a belt that is solid from above. Reversed gravity then pulls the body to
+/// the lower side of a second belt.
 #[test]
 fn one_way_belts_pass_bodies_on() {
     let mut stage = Stage::new();
@@ -258,7 +258,7 @@ fn one_way_belts_pass_bodies_on() {
         stage.world.set_body(body, &settings).expect("valid");
         stage.run(1);
         rode |= (stage.place(body).y - fx!(4.5)).abs() < fx!(0.05) && stage.velocity(body).x < fx!(-11);
-        // The body may have turned on its side.
+        // The body may have turned and rest on another side.
         let depth = -stage.place(body).y;
         let touches = (depth - fx!(4.5)).abs() < fx!(0.05) || (depth - fx!(4)).abs() < fx!(0.05);
         hung |= touches && stage.velocity(body).x > fx!(11);
@@ -283,7 +283,7 @@ fn platforms_carry_boxes() {
             .collect();
         stage.run(30);
         for tick in 0..600 {
-            // At most 3 m/s² sideways, a third of what friction 1 can give.
+            // The platform accelerates by at most 3 m/s² sideways, a third of what a friction of 1 can give.
             let time = Angle::from_radians(num(tick) / 60);
             let velocity = Vec2::new(widen(time.sin()) * 3, widen((time + time).sin()) / 2);
             if moved {
@@ -317,7 +317,7 @@ fn a_carried_sensor_sees_what_it_passes() {
         let begun = stage.world.events().sensor_begin.iter();
         seen.extend(begun.map(|event| stage.world.shape(event.visitor).expect("there").body()));
     });
-    // Within 1 m of where the sensor lands.
+    // These boxes are within 1 m of the place where the sensor lands.
     assert!(seen.contains(&boxes[4]) && seen.contains(&boxes[5]), "{seen:?}");
     assert!(!seen.contains(&boxes[0]) && !seen.contains(&boxes[9]));
     let eye = *stage.world.shapes_of(carrier).last().expect("two shapes");

@@ -19,7 +19,7 @@ fn arms_stop_at_limits_beyond_half_a_turn() {
             let arm = stage.spawn(BodyDef::dynamic().position(place).angle(start), &[rect(fx!(1), fx!(0.1))]);
             let radians = |angle: i32| fx_mul(num(angle), PI) / 180;
             let middle = radians((lower + upper) / 2);
-            // Relative to the pose in which the joint is created.
+            // The limits are relative to the pose in which the joint is created.
             let hinge = Revolute::new().limit(radians(lower) - middle, radians(upper) - middle);
             let hinge = hinge.motor(fx!(5) * direction, fx!(20));
             let joint = stage.join_at(ground, arm, hinge, Vec2::ZERO);
@@ -67,7 +67,7 @@ fn nets_hang() {
         }
         nodes.push(node);
     }
-    // Rows of welds and of sliders beside the net.
+    // Rows of welds and of sliders hang beside the net.
     for (x, is_weld) in [(12, true), (22, false)] {
         let mut before = stage.spawn(BodyDef::fixed().position(Vec2::new(num(x), Fx::ZERO)), &[]);
         for i in 1..5 {
@@ -122,7 +122,7 @@ fn pendulums_of_bars_gain_no_energy() {
             before = bar;
         }
         let start = stage.energy();
-        // A hundredth of the energy from level to hanging.
+        // The tolerance is a hundredth of the energy between the level and the hanging pose.
         let allowed = fx!(0.1) * i64::from(bars * bars);
         stage.run_and(600, |stage| assert!(stage.energy() < start + allowed, "{bars}: {} J", stage.energy()));
         assert!(stage.world.widest_joint_gap() < fx!(0.01));

@@ -29,8 +29,8 @@ fn a_pyramid_carries_a_heavy_top() {
         let mut stage = Stage::with_floor();
         let top = pyramid(&mut stage, fx!(1), 10, num(density));
         stage.run(900);
-        // A contact yields by about its load over m (2 pi 30 Hz)^2: 4 cm under 6 kN on 4 kg, and less in each row
-        // below.
+        // A contact yields by about its load over m (2 pi 30 Hz)^2. This is 4 cm under 6 kN on a box of 4 kg, and less
+        // in each row below.
         near(stage.place(top).y, fx!(19), fx!(0.25));
         near(stage.place(top).x, fx!(0), fx!(0.05));
         assert_eq!(stage.world.awake_body_count(), 0);
@@ -132,7 +132,7 @@ fn a_row_of_sliders_recovers() {
     }
 }
 
-/// Sample "Bad Steiner". A few centimetres, 78 m from the origin of the body.
+/// Sample "Bad Steiner". The shape is a few centimetres in size, 78 m from the origin of its body.
 #[test]
 fn a_sliver_far_from_its_origin_has_a_mass() {
     let mut stage = Stage::new();
@@ -207,7 +207,7 @@ fn a_body_that_became_fixed_stops_a_bullet() {
     }
 }
 
-/// Sample "Unstable Prismatic Joints", also with the radius that the sample names as the cause of a crash.
+/// Sample "Unstable Prismatic Joints", also with the radius that crashes according to a comment in the sample.
 #[test]
 fn a_light_ball_between_heavy_ones_is_stable() {
     for radius in [fx!(0.5), fx!(0.1)] {

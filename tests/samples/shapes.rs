@@ -6,7 +6,7 @@ use lockstep2d::math::{Angle, Fx, Rng, Vec2};
 
 use super::{Stage, ball, capsule, hull, line, near, num, pill, rect, rounded, square};
 
-/// Slopes that end in a level stretch between two walls.
+/// Points of slopes that end in a level stretch between two walls.
 fn valley() -> [Vec2<Fx>; 8] {
     [at!(-20, 30), at!(-20, 12), at!(-14, 8), at!(-7, 3), at!(-1, 0), at!(9, 0), at!(20, 0), at!(20, 30)]
 }
@@ -50,7 +50,7 @@ fn links_of_ones_own_are_smooth_and_can_change() {
         near(stage.velocity(body).x, fx!(5), fx!(0.001));
         near(stage.place(body).y, fx!(0.5), fx!(0.01));
     });
-    // At -8 m, the links under the body are moved away.
+    // The body is at -8 m. The links under it are moved away.
     let shapes = stage.world.shapes_of(ground).to_vec();
     for &id in &shapes[5..8] {
         stage
@@ -74,7 +74,7 @@ fn compounds_stand_and_bear_an_intruder() {
     // The centroids of the triangles are at (0 + 4 / 3 + 4) / 3.
     near(stage.body(ship).local_centre_of_mass().y, fx!(16 / 9), fx!(0.00001));
     near(stage.body(ship).local_centre_of_mass().x, fx!(0), fx!(0.00001));
-    // 6 + 3 + 3 m², with the centre at (6 * 3.5 + 6 * 1.5) / 12.
+    // The table has 6 + 3 + 3 m². Its centre is at (6 * 3.5 + 6 * 1.5) / 12.
     near(stage.body(table).mass(), fx!(12), fx!(0.00001));
     near(stage.body(table).local_centre_of_mass().y, fx!(2.5), fx!(0.00001));
     stage.run(180);
@@ -106,7 +106,7 @@ fn filters_change_at_run_time() {
     heights(&stage, [fx!(1), fx!(3), fx!(5)]);
     stage.world.set_filter(stage.shape(pile[0]), team(2, !4)).expect("valid");
     stage.run(240);
-    // The second player falls through the first, the third stays on both.
+    // The second player falls through the first. The third stays on both.
     heights(&stage, [fx!(1), fx!(1), fx!(3)]);
 }
 
@@ -208,7 +208,7 @@ fn a_heap_of_ellipses_rests() {
     rests_in_the_trough(&mut stage);
 }
 
-/// 10 m wide.
+/// A trough 10 m wide.
 fn trough() -> Stage {
     let mut stage = Stage::with_floor();
     stage.fixed(at!(-6, 10), rect(fx!(1), fx!(10)));
@@ -236,7 +236,7 @@ fn shapes_far_from_their_origins_stack() {
     let upper = stage.add(Vec2::ZERO, ShapeDef::new(plank.expect("valid")).offset(at!(9, 2)));
     assert_eq!(stage.body(upper).centre_of_mass(), at!(9, 2));
     stage.run(300);
-    // All centres are on x = 9.
+    // The centres of all shapes are on x = 9.
     near(stage.body(pill).centre_of_mass().y, fx!(0.25), fx!(0.02));
     near(stage.body(upper).centre_of_mass().y, fx!(1.25), fx!(0.03));
     near(stage.body(upper).centre_of_mass().x, fx!(9), fx!(0.02));

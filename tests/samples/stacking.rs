@@ -6,7 +6,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 
 use super::{Stage, ball, capsule, hull, line, near, num, pill, rect, rounded, square};
 
-/// Sample "Single Box": `v^2 / (2 mu g)`.
+/// Sample "Single Box". The box slides by `v^2 / (2 mu g)`.
 #[test]
 fn a_box_slides_to_rest() {
     let mut stage = Stage::with_floor();
@@ -26,7 +26,7 @@ fn a_stack_falls_when_it_leans_too_far() {
         let place = |i: i32| Vec2::new(lean * i64::from(i), num(i) + fx!(0.5));
         let stack: Vec<_> = (0..10).map(|i| stage.add(place(i), crate_)).collect();
         stage.run(900);
-        // The centre of mass of the upper nine boxes is five times `lean` beside that of the lowest box.
+        // The centre of mass of the upper nine boxes is beside that of the lowest box, by five times `lean`.
         let top = stage.place(stack[9]).y;
         assert_eq!(top < fx!(9), falls, "a lean of {lean} m: the top is at {top} m");
         assert!(stack.iter().all(|&id| stage.place(id).y > fx!(0.49)), "expected no box in the ground");
@@ -117,7 +117,7 @@ fn an_edge_does_not_kick() {
                 assert!(stage.velocity(body).x.abs() < speed + fx!(0.02), "{:?}", stage.velocity(body));
             }
         });
-        // A metre before the edge.
+        // The capsules, which start a metre before the edge, have fallen.
         assert!([0, 3, 6].iter().all(|&i| stage.place(bodies[i].0).y < bodies[i].1 - fx!(0.5)));
     }
 }
@@ -151,7 +151,7 @@ fn all_dominoes_fall() {
         .collect();
     stage.world.apply_impulse(dominoes[0], at!(0.2, 0), at!(-7.5, 1)).expect("valid");
     stage.run(600);
-    // Each one lies on the next, a metre away.
+    // Each domino lies on the next, a metre away.
     for &id in &dominoes {
         assert!(stage.angle(id) < fx!(-1), "a domino stands at {} rad", stage.angle(id));
     }
@@ -175,7 +175,7 @@ fn a_crowded_room_does_not_leak() {
     }
 }
 
-/// Sample "Card House": 2 mm thick.
+/// Sample "Card House". A card is 2 mm thick.
 #[test]
 fn a_house_of_cards_stands() {
     let mut stage = Stage::new();

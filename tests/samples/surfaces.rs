@@ -8,7 +8,7 @@ use lockstep2d::world::Explosion;
 
 use super::{Stage, ball, line, near, num, rect, rounded, square};
 
-/// Sample "Restitution": up to `e^2 h`.
+/// Sample "Restitution". A bounce reaches up to `e^2 h`.
 #[test]
 fn a_bounce_returns_the_square_of_the_restitution() {
     for shape in [ball(fx!(0.5)), square(fx!(0.5))] {
@@ -23,7 +23,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
                 if bounced {
                     highest = highest.max(stage.place(body).y - fx!(0.5));
                 }
-                // If no energy is added.
+                // The bounce is no higher than the start if no energy is added.
                 assert!(!bounced || highest < fx!(10.02), "{highest} m");
             });
             near(highest, fx_mul(restitution, restitution) * 10, fx!(0.25));
@@ -31,7 +31,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Sample "Friction": a box stays if `mu > tan(angle)`, and otherwise slides with `g (sin - mu cos)`.
+/// Sample "Friction". A box stays if `mu > tan(angle)`, and otherwise slides with `g (sin - mu cos)`.
 #[test]
 fn friction_decides_who_stays_on_the_slope() {
     let angle = Angle::from_radians(fx!(-0.25));
@@ -44,7 +44,7 @@ fn friction_decides_who_stays_on_the_slope() {
         let def = BodyDef::dynamic().angle(angle).position(Vec2::new(down, cos).scale(fx!(0.5)));
         let body = stage.spawn(def, &[square(fx!(0.5)).density(fx!(25)).friction(friction)]);
         stage.run(120);
-        // Geometric mean, sqrt(0.2 friction).
+        // The combined friction is the geometric mean, sqrt(0.2 friction).
         let mixed = lockstep2d::math::sqrt(friction / 5).expect("not negative");
         let pull = (down - fx_mul(mixed, cos)) * 10;
         let expected = if pull > 0 { pull * 2 } else { Fx::ZERO };
@@ -52,7 +52,7 @@ fn friction_decides_who_stays_on_the_slope() {
     }
 }
 
-/// Sample "Rolling Resistance": `v^2 / 2 a` with `a = 2/3 c g`.
+/// Sample "Rolling Resistance". A ball gets as far as `v^2 / 2 a` with `a = 2/3 c g`.
 #[test]
 fn rolling_resistance_decides_how_far_a_ball_gets() {
     for i in [2, 5, 10, 15] {
@@ -95,14 +95,14 @@ fn each_link_of_a_chain_has_its_own_speed() {
     stage.spawn(BodyDef::fixed(), &chain);
     let boxes: Vec<_> =
         (0..5).map(|i| stage.add(Vec2::new(num(10 * i + 5), fx!(0.5)), square(fx!(0.5)))).collect();
-    // The fastest box reaches 5 m/s in 0.83 s, 2.1 m from the middle of its link.
+    // The fastest box reaches 5 m/s after 0.83 s, when it is 2.1 m from the middle of its link.
     stage.run(60);
     for (&id, speed) in boxes.iter().zip(speeds) {
         near(stage.velocity(id).x, speed, fx!(0.02));
     }
 }
 
-/// Sample "Explosion". Meanwhile the welds turn the balls.
+/// Sample "Explosion". The welds turn the balls after the explosion.
 #[test]
 fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut stage = Stage::weightless();
@@ -117,7 +117,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
     let blast = Explosion { radius: fx!(7), falloff: fx!(3), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     stage.world.explode(&blast).expect("valid");
-    // The nearest point is 7.5 m away: 10 N s/m times (1 - 0.5 / 3), times 1 m.
+    // The nearest point is 7.5 m away. The impulse is 10 N s/m times (1 - 0.5 / 3), times 1 m.
     let speed = fx_div(fx!(25 / 3), stage.body(ring[0].0).mass()).expect("positive");
     for &(body, _, place) in &ring {
         near(stage.velocity(body).length(), speed, fx!(0.01));
@@ -132,7 +132,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
         }
         stage.run(1);
     }
-    // A sixth of a turn per second.
+    // The target turns by a sixth of a turn per second.
     let turn = lockstep2d::math::PI / 3;
     for &(body, _, place) in &ring {
         near(stage.place(body).distance(place), fx!(0), fx!(0.01));
@@ -180,7 +180,7 @@ fn a_chain_leans_in_the_wind() {
             links.push(link);
         }
         stage.run(1800);
-        // 3 m/s² sideways and 10 m/s² down.
+        // The acceleration is 3 m/s² sideways and 10 m/s² down.
         for &link in &links {
             near(stage.angle(link), fx!(0.29146), fx!(0.01));
         }

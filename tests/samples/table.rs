@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-/// As `module::function` in backquotes.
+/// Words of the form `module::function` in backquotes.
 fn named(page: &str) -> BTreeSet<String> {
     page.split('`').filter(|word| word.contains("::") && is_test_name(word)).map(str::to_owned).collect()
 }
 
-/// Names of types begin with a capital letter.
+/// Whether a word can be the name of a test. Names of types begin with a capital letter.
 fn is_test_name(word: &str) -> bool {
     word.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == ':')
 }

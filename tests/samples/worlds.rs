@@ -62,9 +62,9 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     dynamic.map(|(_, body)| (body.position() - origin, body.angle())).collect()
 }
 
-/// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin, results agree within 10 µm.
-/// Results far to the left and below are bit-identical to results near the origin. Results far to the right and above
-/// are bit-identical to each other.
+/// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin, results agree within 10 µm
+/// with those near the origin. Far to the left and below, results are bit-identical to those near the origin. Far to
+/// the right and above, results are bit-identical to each other.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));
@@ -98,7 +98,7 @@ fn falling_hinges() -> World {
     stage.world
 }
 
-/// Returns the number of ticks and the state hash.
+/// Steps until all bodies sleep, for at most 3000 ticks. Returns the number of ticks and the state hash.
 fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     while world.awake_body_count() > 0 && world.tick() < 3000 {
         world.step();

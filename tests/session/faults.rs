@@ -1,15 +1,16 @@
-//! Planted faults break an invariant in some match.
+//! Each planted fault breaks an invariant in some match.
 
 use lockstep2d::session::Fault;
 
 use super::{storm, sweep};
 
-/// Largest number of matches with a fault.
+/// Largest number of matches to play with a fault.
 const MATCHES: u64 = 300;
-/// For a fault that breaks an invariant in about one of a thousand storms, in the long run.
+/// Largest number of matches for a fault that breaks an invariant in about one of a thousand storms, in the long run.
 const MATCHES_RARE: u64 = 2000;
 
-/// Each fault, the first seed, and the step of seeds. With a step of 10, all matches are of one `Class`.
+/// Each fault, the first seed, and the difference between seeds. With a difference of 10, all matches are of one
+/// `Class`.
 const FAULTS: [(Fault, u64, u64); 13] = [
     (Fault::NoFreeze, 0, 1),
     (Fault::OwnCut, 0, 1),

@@ -1,4 +1,4 @@
-//! The state is a hash of all inputs.
+//! A game whose state is a hash of all inputs.
 
 use lockstep2d::session::{Request, Session, Tick, TickInputs};
 
@@ -8,7 +8,7 @@ pub(crate) fn mix(hash: u64, value: u64) -> u64 {
     mixed ^ mixed >> 32
 }
 
-/// Predicted inputs are mixed in like received ones.
+/// Hashes the inputs of a tick. Predicted inputs count like received ones.
 pub(crate) fn mix_inputs(hash: u64, inputs: &TickInputs) -> u64 {
     let hash = inputs.bytes().iter().fold(hash, |hash, &byte| mix(hash, u64::from(byte)));
     mix(hash, inputs.absent())
@@ -16,12 +16,12 @@ pub(crate) fn mix_inputs(hash: u64, inputs: &TickInputs) -> u64 {
 
 pub(crate) const START: u64 = 1;
 
-/// `states[t]` is the state before tick `t`.
+/// A game in which `states[t]` is the state before tick `t`.
 #[derive(Debug)]
 pub(crate) struct Game {
     pub(crate) states: Vec<u64>,
     saved: Vec<(Tick, u64)>,
-    /// Including repeated ones.
+    /// Number of simulated ticks, including repeated ones.
     pub(crate) simulated: u64,
     /// The tick in which a wrong state is computed on purpose.
     pub(crate) mistake: Option<Tick>,
@@ -32,7 +32,7 @@ impl Game {
         Game { states: vec![START], saved: Vec::new(), simulated: 0, mistake: None }
     }
 
-    /// Fails on a request that cannot be fulfilled.
+    /// Fulfils all requests of a session. Fails on a request that cannot be fulfilled.
     pub(crate) fn fulfil(&mut self, session: &mut Session) -> Result<(), String> {
         while let Some(request) = session.next_request() {
             match request {

@@ -1,4 +1,4 @@
-//! After the links of a match have healed, all living peers play, and finish.
+//! After the links of a match have healed, all living peers play and finish the match.
 
 use super::sim::{MS, S, Sim, id};
 use super::storm::{Class, Figures, HEAL, Match, SEATED};
@@ -35,12 +35,12 @@ impl Match {
         (0..self.total).filter(alive).collect()
     }
 
-    /// Whether all living peers have seats in the newest view. `None` if they cannot all reach each other, or are no
-    /// quorum.
+    /// Whether all living peers have seats in the newest view. `None` if some of them cannot reach each other, or if
+    /// they are no quorum.
     pub(super) fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
-        // No living peer knows a view that only crashed peers have installed.
+        // A view that only crashed peers have installed is not known to any living peer.
         let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
         let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);
@@ -90,7 +90,7 @@ impl Match {
         (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
     }
 
-    /// A peer that should have played two ticks since `before`, and has not.
+    /// A peer that has not played the two ticks that it should have played since `before`.
     pub(super) fn stands_still(&self, before: &[u32]) -> Option<usize> {
         if self.class.ends_early() || self.all_seated() != Some(true) {
             return None;

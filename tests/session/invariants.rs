@@ -43,12 +43,12 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// A peer that has left answers until all others know that, or for a long time.
+    /// A peer that has left keeps answering until all others know that it has left, or for a long time.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
         let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
-        // Later changes of the view do not extend the wait.
+        // The wait ends 11 s after the peer has left. Later changes of the view do not extend it.
         if !left || self.now > leaver.left_at + 11 * S {
             return;
         }

@@ -13,7 +13,7 @@ fn players_join_while_the_others_play_at_full_speed() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(6 * S);
     net.assert_all_play();
-    // The third peer receives the address of the first from its contact, the second.
+    // The second peer is the contact of the third. It sends the address of the first peer.
     net.join(Role::Player { seats: 2 }, 2);
     net.run(10 * S);
     net.assert_all_play();
@@ -49,7 +49,7 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
-/// Over links with a loss of 0 and 1 %.
+/// Links have a loss of 0 or 1 %.
 #[test]
 fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     for loss in [0, 1] {
@@ -72,7 +72,7 @@ fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     }
 }
 
-/// Another player serves the spectator, which continues from its ticks.
+/// Another player serves the spectator, which continues from the ticks that it has.
 #[test]
 fn a_spectator_whose_contact_goes_finds_another() {
     let mut net = Net::new(20 * MS, 1, 1000);
@@ -123,7 +123,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Six spectators, each known only to its own contact.
+/// Each of six spectators is known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);
@@ -158,7 +158,7 @@ fn an_address_may_change() {
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
-/// Two of three peers cannot reach each other.
+/// Two of three peers cannot reach each other directly.
 #[test]
 fn somebody_in_between_relays() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -172,7 +172,7 @@ fn somebody_in_between_relays() {
     assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 3);
 }
 
-/// A new incarnation with the same key.
+/// The restarted process is a new incarnation with the same key.
 #[test]
 fn a_restarted_process_gets_its_seat_back() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -192,7 +192,7 @@ fn a_restarted_process_gets_its_seat_back() {
     assert_eq!(net.nodes[index].endpoint.session().expect("valid").seats(), 0b10);
 }
 
-/// The contact crashes during the download.
+/// The contact crashes during the download of the state.
 #[test]
 fn another_contact_can_be_asked() {
     let mut net = Net::new(20 * MS, 0, 40 << 20);

@@ -22,14 +22,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use lockstep2d_tests::sweep;
 
-/// Seeds of a full run, of up to 30 minutes on two cores.
+/// Number of seeds of a full run, which takes up to 30 minutes on two cores.
 const SEEDS: u64 = 100_000;
 /// Number of seeds of a sampled run.
 const SAMPLE: u64 = 100;
 
-/// A match in which enough peers survive and are connected plays more ticks.
+/// A match in which enough peers survive and are connected plays more ticks than this.
 const TICKS_MIN: u64 = 20;
-/// Almost all matches play at least this many: the first planned end is after 4 s.
+/// Almost all matches play at least this many ticks: the first planned end is after 4 s.
 const TICKS_USUAL: u64 = 40;
 
 #[test]
@@ -39,7 +39,7 @@ fn every_invariant_holds_in_storms() {
     sweep::for_each((0..seeds).collect(), |seed| {
         let (failure, figures) = storm::play(seed, |_| ());
         assert_eq!(failure, None, "seed {seed}: {figures:?}");
-        // A match that has ended counts as one without a quorum.
+        // A match that has ended may count as one without a quorum.
         let stopped = figures.no_quorum == 1 && figures.finished == 0;
         assert!(figures.ticks > TICKS_MIN || stopped, "seed {seed}: {figures:?}");
         short.fetch_add(u64::from(figures.ticks < TICKS_USUAL), Ordering::Relaxed);

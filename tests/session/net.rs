@@ -8,7 +8,7 @@ use lockstep2d::session::{Address, Config, Endpoint, Identity, JoinEvent, Reques
 use super::game::{START, mix_inputs};
 use super::sim::{MS, Rng, S, Us, id, key};
 
-/// The state is a hash, followed by bytes that make it larger.
+/// An endpoint and its game. The state of the game is a hash, followed by bytes that make it larger.
 pub(super) struct Node {
     pub(super) endpoint: Endpoint,
     pub(super) address: u8,
@@ -19,7 +19,7 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks, the second of them after two seconds. Tests reset it to 0.
+    /// Longest time between two ticks, of which the second one is after the first two seconds. Tests reset it to 0.
     pub(super) stall: Us,
     pub(super) last_tick: Us,
 }
@@ -36,9 +36,9 @@ pub(super) struct Net {
     pub(super) latency: Us,
     pub(super) loss: u64,
     pub(super) state_bytes: usize,
-    /// To each address.
+    /// Number of bytes sent to each address.
     pub(super) sent_to: [u64; 256],
-    /// From each address.
+    /// Number of bytes received from each address.
     pub(super) received_from: [u64; 256],
     pub(super) blocked: Vec<(u8, u8)>,
 }

@@ -4,7 +4,7 @@ use lockstep2d::session::{Config, Role, View};
 
 use super::sim::{LinkConditions, MS, S, Sim, Us, id, key};
 
-/// Sessions are called every millisecond.
+/// A running match. Its sessions are called every millisecond.
 pub(crate) fn players(count: usize, link: LinkConditions, configure: impl Fn(&mut Config)) -> Sim {
     let mut sim = Sim::new(count as u64 + link.latency, count);
     sim.look = MS;
@@ -29,7 +29,7 @@ pub(crate) fn link(latency: Us) -> LinkConditions {
     LinkConditions { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
 }
 
-/// Pace of the slowest peer after 5 s, in hundredths of a confirmed tick per second.
+/// Pace of the slowest peer during `seconds` after the first 5 s, in hundredths of a confirmed tick per second.
 pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     let played =
         |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
@@ -40,7 +40,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// The latency plus one tick. Calls add a millisecond.
+/// Delay in ticks: the latency plus one tick. The calls of the session add up to a millisecond to the latency.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }

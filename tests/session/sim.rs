@@ -22,7 +22,7 @@ impl Rng {
         self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11
     }
 
-    /// Inclusive.
+    /// Random number from `low` to `high`, both included.
     pub(crate) fn range(&mut self, low: u64, high: u64) -> u64 {
         low + self.next() % (high - low + 1)
     }
@@ -44,7 +44,7 @@ pub(crate) struct LinkConditions {
     /// Largest addition to the latency.
     pub(crate) jitter: Us,
     pub(crate) loss: u64,
-    /// Packets that are sent earlier are lost.
+    /// Time until which the link is cut. Packets that are sent earlier are lost.
     pub(crate) cut_until: Us,
 }
 
@@ -58,13 +58,14 @@ pub(crate) struct Peer {
     pub(crate) kicked: bool,
     pub(crate) spectator: bool,
     pub(crate) stopped_until: Us,
-    /// In thousandths of the speed of simulated time.
+    /// Speed of the peer's clock, in thousandths of the speed of simulated time.
     pub(crate) skew: u64,
     pub(crate) queue: Vec<Vec<u8>>,
     pub(crate) lost_seats: u32,
-    /// The game does not advance.
+    /// Whether the game shows a menu and does not advance.
     pub(crate) in_menu: bool,
-    /// Peers that the session reported to wait for. The flag tells whether the peer is heard, also through others.
+    /// Peers that the session reported to wait for. The flag tells whether the session hears the peer, also through
+    /// others.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,
@@ -95,12 +96,12 @@ pub(crate) struct Sim {
     pub(crate) links: Vec<Vec<LinkConditions>>,
     /// Percentage of very late packets.
     pub(crate) late: u64,
-    /// Percentage of packets.
+    /// Percentage of packets that arrive twice.
     pub(crate) doubled: u64,
     /// Percentage of new views at which a peer crashes.
     pub(crate) assassin: u64,
     pub(crate) look: Us,
-    /// Shared by all peers: the state before each tick.
+    /// State before each tick, shared by all peers.
     pub(crate) history: Vec<u64>,
     pub(crate) views: BTreeMap<u32, View>,
     pub(crate) failure: Option<String>,
@@ -185,7 +186,7 @@ impl Sim {
         self.push(at, Kind::Crash(index));
     }
 
-    /// As a join does.
+    /// Makes two peers known to each other, as a join does.
     pub(crate) fn introduce(&mut self, a: usize, b: usize) {
         self.peers[a].session.attach(id(b), Some(key(b)));
         self.peers[b].session.attach(id(a), Some(key(a)));
@@ -201,7 +202,7 @@ impl Sim {
         self.heap.push(Reverse((at, self.sequence, kind)));
     }
 
-    /// Until a time, or to the first failure.
+    /// Simulates until a time, or to the first failure.
     pub(crate) fn run(&mut self, until: Us) {
         while let Some(&Reverse((at, _, kind))) = self.heap.peek() {
             if at > until || self.failure.is_some() {
@@ -262,7 +263,7 @@ impl Sim {
             let seats = peer.session.seats().count_ones() as u64;
             let input: Vec<u8> = (0..seats).map(|seat| (mix(peer.input, seat) % 5) as u8).collect();
             if peer.session.advance(local, &input) == Ok(true) {
-                // Inputs are held for a while.
+                // A peer holds its input for a while.
                 peer.input =
                     if peer.input.is_multiple_of(3) { mix(peer.input, local) } else { peer.input + 1 };
             }
@@ -340,12 +341,12 @@ impl Sim {
         seen
     }
 
-    /// That any peer has installed.
+    /// Newest view that any peer has installed.
     pub(crate) fn newest_view(&self) -> &View {
         self.views.last_key_value().expect("the first view").1
     }
 
-    /// Bit set of places among the voters, for quorums.
+    /// Bit set of the places of peers among the voters of a view, to test for quorums.
     pub(crate) fn voters_among(view: &View, peers: impl Iterator<Item = usize>) -> u64 {
         peers.filter_map(|index| view.voter(id(index))).fold(0, |set, index| set | 1 << index)
     }

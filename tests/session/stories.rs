@@ -34,7 +34,7 @@ fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     assert_eq!(sim.failure, None);
 }
 
-/// Every peer waits until the host votes to go on without the missing one.
+/// All peers wait until the host votes to go on without the missing one.
 #[test]
 fn with_infinite_patience_somebody_has_to_ask() {
     let mut sim = players(3, link(30 * MS), |config| config.timing.patience = u64::MAX);
@@ -89,7 +89,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
-/// Peer 0 could remove a peer alone: it is the `View::tie_holder`. Other peers need a quorum of votes.
+/// Peer 0 is the `View::tie_holder` and could remove a peer alone. Other peers need a quorum of votes.
 #[test]
 fn two_votes_of_five_kick_nobody_and_three_do() {
     let mut sim = players(5, link(30 * MS), |_| ());
@@ -145,7 +145,7 @@ fn spectators_watch_through_one_another() {
     assert_eq!(sim.failure, None);
 }
 
-/// It is tick 0 for all of them.
+/// All players start with tick 0.
 #[test]
 fn the_first_tick_waits_for_enough_players() {
     let configure = |config: &mut Config| (config.seats, config.start_with) = (4, 3);
@@ -216,7 +216,7 @@ fn somebody_who_leaves_costs_no_waiting() {
     assert_eq!(sim.failure, None);
 }
 
-/// All of them are players.
+/// All 64 peers are players.
 #[test]
 fn sixty_four_peers_play() {
     let mut sim = players(64, link(40 * MS), |config| config.tick_micros = 33_333);

@@ -6,7 +6,7 @@ use lockstep2d::session::{Config, Role, Timing, View};
 use super::game::mix;
 use super::sim::{LinkConditions, MS, Rng, S, Sim, Us, id, key};
 
-/// By the last digit of the seed.
+/// Kind of a match, given by the last digit of the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     ShortOutages,
@@ -89,18 +89,18 @@ pub(crate) struct Figures {
     pub(crate) bytes: u64,
     pub(crate) finished: u64,
     pub(crate) lost_seats: u64,
-    /// From the healing of the links until all are seated again.
+    /// Time from the healing of the links until all peers are seated again.
     pub(crate) healed: Us,
     /// 1 if no quorum of the newest view is alive and connected after the links healed.
     pub(crate) no_quorum: u64,
 }
 
 pub(super) const HEAL: Us = 20 * S;
-/// After `HEAL`, until all peers are seated.
+/// Largest time from `HEAL` until all peers are seated.
 pub(super) const SEATED: Us = 12 * S;
-/// In which all seated peers should advance.
+/// Time in which all seated peers should advance.
 const MOVED: Us = 3 * S;
-/// From this time on, events happen after the match has been checked for healing.
+/// Events from this time on happen after the match has been checked for healing.
 const LATE: Us = 100 * S;
 
 pub(super) struct Match {
@@ -111,7 +111,7 @@ pub(super) struct Match {
     pub(super) total: usize,
 }
 
-/// Returns the first violation, and figures.
+/// Plays a match. Returns the first violation, and figures.
 pub(crate) fn play(seed: u64, configure: impl Fn(&mut Config)) -> (Option<String>, Figures) {
     let mut game = Match::new(seed, configure);
     let mut figures = Figures::default();

@@ -75,7 +75,7 @@ struct Handles {
     joint: JointId,
 }
 
-/// A second body and shape reuse a slot.
+/// Handles of a world in which a body and its shape have reused a slot.
 fn handles() -> Result<Handles, WorldError> {
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(1))?);
@@ -96,7 +96,7 @@ fn shape_id() -> Written {
     w().u32(0).u32(1)
 }
 
-/// No setting has its default value.
+/// A polygon without a default value in any setting.
 fn polygon() -> (ShapeDef, Written) {
     polygon_with(None, w().u8(1))
 }
@@ -107,7 +107,7 @@ fn pool() -> (ShapeDef, Written) {
     polygon_with(Some(area), w().u8(3).then(bytes))
 }
 
-/// All effects are present.
+/// An area with all effects.
 fn area() -> (Area, Written) {
     let area = Area::fluid(fx!(9)).drag(fx!(7), fx!(8)).flow((fx!(5), fx!(6))).force((fx!(3), fx!(4)));
     let area = area.acceleration((fx!(1), fx!(2))).attraction(fx!(-1), fx!(2), Falloff::InverseSquare);
@@ -115,7 +115,7 @@ fn area() -> (Area, Written) {
     (area, bytes)
 }
 
-/// `sensor` contains the bytes of the flags and of the area.
+/// A polygon with or without an area. `sensor` contains the bytes of the flags and of the area.
 fn polygon_with(area: Option<Area>, sensor: Written) -> (ShapeDef, Written) {
     let material = Material {
         friction: fx!(0.5),
@@ -172,7 +172,7 @@ fn mass() -> (MassSource, Written) {
     (MassSource::Given { mass: fx!(2), centre, gyration: fx!(0.5) }, w().u32(1).fx(&[4, 2, -1, 1]))
 }
 
-/// Each kind, with different optional parts.
+/// A joint of each kind, with different optional parts.
 fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
     let (one, two, three) = (fx!(1), fx!(2), fx!(3));
     let distance = Distance::rod(one).limit(one, two).motor(one, two).spring(one, two, three);
@@ -226,7 +226,7 @@ fn geometries() -> [(Geometry, Written); 4] {
     ]
 }
 
-/// In the order of the document's table.
+/// Commands in the order of the document's table.
 fn cases(handles: &Handles) -> Vec<(Command, Written)> {
     let &Handles { body, other, shape, joint } = handles;
     let vector = Vec2::new(fx!(1), fx!(-0.5));

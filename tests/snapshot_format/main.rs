@@ -13,8 +13,8 @@ use lockstep2d::world::{Config, Section, World};
 
 use reader::Reader;
 
-/// A ball that is pinned by a joint and rests on a line, a sleeping capsule on the line, and the vacant slots of a
-/// removed triangle.
+/// A world with a pinned ball that rests on a line, a sleeping capsule on the line, and the vacant slots of a removed
+/// triangle.
 fn example() -> Result<World, WorldError> {
     let config =
         Config { body_limit: 100, shape_limit: 100, joint_limit: 100, pair_limit: 100, ..Config::default() };
@@ -78,7 +78,7 @@ fn the_state_hash_is_made_of_the_sections() {
         assert_eq!(read.digest(), world.digest(), "digests must not depend on earlier saves");
         let digests = world.digest().sections;
         assert!(sections.iter().map(|(section, _)| section).eq(digests.iter().map(|(section, _)| section)));
-        // Only these two sections are hashed as a whole, the others in pages.
+        // Two sections are hashed as a whole. The others are hashed in pages.
         for ((section, range), (_, digest)) in sections.into_iter().zip(&digests) {
             if matches!(section, Section::World | Section::Random) {
                 assert_eq!(*digest, StateHash::of_bytes(&bytes[range]), "{section}");

@@ -6,7 +6,7 @@ use std::ops::Range;
 use lockstep2d::hash::StateHash;
 use lockstep2d::world::Section;
 
-/// Lists the meaning of each field.
+/// Reads fields, and lists the meaning of each.
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -64,7 +64,7 @@ impl<'a> Reader<'a> {
         self.number(name, i64::from_le_bytes)
     }
 
-    /// One byte, and the value if the byte is 1.
+    /// Reads one byte, and a value if the byte is 1.
     fn option(&mut self, name: &str, value: impl FnOnce(&mut Self)) {
         match self.u8(name) {
             0 => {}
@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Adjacent fixed-point numbers of 4 or 8 bytes.
+    /// Reads adjacent fixed-point numbers of 4 or 8 bytes.
     fn fixed(&mut self, name: &str, count: usize, bytes: usize, fraction_bits: u32) {
         self.take(count * bytes, name, |taken| {
             let number = |chunk: &[u8]| {
@@ -349,7 +349,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the byte range of each section of the state.
+    /// Reads a world. Returns the byte range of each section of the state.
     pub(crate) fn world(&mut self) -> Vec<(Section, Range<usize>)> {
         self.take(8, "magic, LS2DWRLD", |_| String::new());
         assert_eq!(self.u32("format version"), 4);
@@ -387,7 +387,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// `bits / 2^fraction_bits` with at most six fractional digits, rounded towards zero.
+/// Text of `bits / 2^fraction_bits` with at most six fractional digits, rounded towards zero.
 fn decimal(bits: i64, fraction_bits: u32) -> String {
     let micro = (u128::from(bits.unsigned_abs()) * 1_000_000) >> fraction_bits;
     let text = format!("{}{}.{:06}", if bits < 0 { "-" } else { "" }, micro / 1_000_000, micro % 1_000_000);

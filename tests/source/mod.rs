@@ -103,7 +103,7 @@ fn block_comment(rest: &str) -> usize {
     at
 }
 
-/// Up to and including the closing quote.
+/// Length up to and including the closing quote.
 fn quoted(text: &str, quote: char) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices() {

@@ -6,7 +6,7 @@ use crate::source::{Source, Token, tokens};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PathUse {
-    /// From the root of the crate, as in `["world", "cache", "Scratch"]`.
+    /// Path from the root of the crate, as in `["world", "cache", "Scratch"]`.
     pub(crate) path: Vec<String>,
     pub(crate) line: usize,
     /// Name of a `pub use`.
@@ -15,7 +15,7 @@ pub(crate) struct PathUse {
     is_used_here: bool,
 }
 
-/// Without tests: files and inline modules named `tests`.
+/// Modules of a crate. Tests, which are files and inline modules named `tests`, are left out.
 pub(crate) struct Crate {
     modules: BTreeMap<Vec<String>, Vec<PathUse>>,
 }
@@ -32,8 +32,8 @@ impl Crate {
         Crate { modules: files.map(read).collect() }
     }
 
-    /// Modules on whose files a module's file depends, each with the line. A re-export only counts if the module itself
-    /// uses the name, because a path through it counts as one to the file that defines the item.
+    /// Modules on whose files a module's file depends, each with the line of the path. A path through a re-export leads
+    /// to the file that defines the item. The re-export itself only counts if its module uses the name.
     pub(crate) fn dependencies(&self, place: &[String]) -> Vec<(Vec<String>, usize)> {
         let paths = self.modules[place].iter().filter(|path| path.reexport.is_none() || path.is_used_here);
         let resolved = paths.map(|path| (self.resolve(&path.path, 0), path.line));
@@ -104,7 +104,7 @@ fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>)
     let mut found = Vec::new();
     // Name of the inline module that each open brace opens.
     let mut braces: Vec<Option<String>> = Vec::new();
-    // Names outside of paths and tests.
+    // Names that occur outside of paths and tests.
     let mut plain = BTreeSet::new();
     let mut at = 0;
     while at < tokens.len() {
@@ -155,8 +155,8 @@ fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Reads a path or a tree. Adds the names of each path, and the name that it brings into scope. Returns the index of
-/// the next token.
+/// Reads a path or a tree. Adds the names of each path, and the name that the path brings into scope. Returns the index
+/// of the next token.
 fn read_tree(
     tokens: &[Token],
     start: usize,
@@ -201,7 +201,7 @@ fn read_tree(
     at
 }
 
-/// From the root of the crate. `None` for a path to another crate.
+/// Path from the root of the crate. `None` for a path to another crate.
 fn absolute(
     names: &[String],
     module: &[String],

@@ -7,7 +7,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::JointDef;
 use lockstep2d::world::{BodyPose, Command, Config};
 
-/// The first occupant of a slot.
+/// Handle of the first occupant of a slot.
 pub(super) fn identifier<H: serde::de::DeserializeOwned>(slot: u32) -> H {
     codec::decode(&u64::from(slot).to_le_bytes()).expect("a handle")
 }

@@ -6,13 +6,13 @@ use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
 use lockstep2d::world::{Command, Config};
 
-/// Nanoseconds per unit. Builds with debug assertions are allowed three times as many.
+/// Largest cost in nanoseconds per unit. Builds with debug assertions are allowed three times as much.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// In a shorter time, the overhead of a tick counts more than its work.
+/// Shortest time that is judged. In a shorter time, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Processor time of this thread or, where the system does not report it, time of the clock.
+/// Processor time of this thread. Where the system does not report it, the time of the clock.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
@@ -20,10 +20,10 @@ pub(super) fn computed() -> Duration {
     nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
 }
 
-/// Commands of a tick, by its number.
+/// Commands of a tick, given its number.
 pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
-/// Repetitions of a pair of short commands that fit into a block of a file.
+/// Largest number of repetitions of a pair of short commands in a tick. They fit into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
 /// How often the size of a case is doubled until a tick takes long enough.
@@ -53,7 +53,7 @@ fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     recording.finish().expect("a replay")
 }
 
-/// Only the total work is limited.
+/// Limits on the total work only.
 fn limits(total_work: u64) -> Limits {
     Limits {
         tick_work: u64::MAX,
@@ -64,7 +64,7 @@ fn limits(total_work: u64) -> Limits {
     }
 }
 
-/// Costs of the setup and of the tick with the highest cost per unit, each the best of three runs.
+/// Cost of the setup, and cost of the tick with the highest cost per unit. Each is the best of three runs.
 fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
@@ -119,12 +119,12 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
         let file = record(setup, 1, &(Box::new(script) as Script<'_>));
         (costs(&file), file)
     };
-    // The commands have to take at least as long as the rest of the tick, which takes no longer than a tick with the
+    // The commands have to take at least as long as the rest of the tick. The rest takes no longer than a tick with the
     // commands once.
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);
-        // A file cannot have enough cheap commands: the tick with the most commands is judged.
+        // If commands are too cheap to reach this time, the tick with the most commands is judged.
         if parts[1].time >= least || (repeats == COMMANDS_MAX && parts[1].time >= JUDGED) {
             let name = format!("{name}, {repeats} times");
             return judge(&name, parts).or_else(|| stopped_late(&name, &file));
@@ -133,7 +133,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
 }
 
-/// Returns the name of a case that is too expensive.
+/// Prints the costs. Returns the name of the case if a cost is too high.
 fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     let mut wrong = None;
     for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
@@ -145,8 +145,8 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with fractions of its work as the limit, which the setup alone may exceed. Returns the name of the
-/// case if verification stops later than the units allow.
+/// Verifies a file with limits of a half, a fifth and a twentieth of its work, which the setup alone may exceed.
+/// Returns the name of the case if verification stops later than the units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {
         let limits = limits(u64::MAX);

@@ -1,5 +1,5 @@
 //! Work units bound the time: no tick and no setup takes more than a microsecond for each unit (three in builds with
-//! debug assertions). The limits of a verifier depend on it.
+//! debug assertions). The limits of a verifier depend on this bound.
 //!
 //! Each case is recorded, and played by the verifier's player, which charges the units. A limit below the work of the
 //! case must stop verification within the time of its units. Times are processor times of the thread, where the system
@@ -56,8 +56,8 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// Hinges at one body, with motors of very different strength that all slip. The block solver needs many rounds to find
-/// those at their limit.
+/// Many hinges at one body have motors of very different strength that all slip. The block solver needs many rounds to
+/// find the motors at their limit.
 #[test]
 fn motors_in_blocks() {
     let case = |count: i64| -> Case<'_> {
@@ -180,7 +180,8 @@ fn every_command_of_a_body_asleep() {
     every_command_of_a_body(true);
 }
 
-/// Every command that names one body or shape, many times in a tick, on a body with many shapes, joints and neighbours.
+/// Times every command that names one body or shape. The command is repeated in a tick, on a body with many shapes,
+/// joints and neighbours.
 fn every_command_of_a_body(settled: bool) {
     let many = body(0);
     let commands = || {
@@ -257,8 +258,8 @@ fn every_command_of_a_body(settled: bool) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The ticks cost far more than the limits, which allow at most a tenth of a second. Verification must end within half
-/// a second, not after a whole tick.
+/// The ticks cost far more than the limits. The limits allow at most a tenth of a second, and verification must end
+/// within half a second, not after a whole tick.
 #[test]
 fn a_limit_ends_a_file_before_its_cost_is_paid() {
     let crowd = |count: i64, settings| {

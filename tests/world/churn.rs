@@ -1,4 +1,4 @@
-//! Random commands for a small, crowded world: most kinds, valid and invalid.
+//! Random commands of most kinds, valid and invalid, for a small, crowded world.
 
 use lockstep2d::body::{
     Area, BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
@@ -24,7 +24,7 @@ impl Churn {
         Churn { rng: Rng::new(seed) }
     }
 
-    /// Random settings, with a floor, two walls, a pool, a lift and up to 15 random bodies.
+    /// World with random settings, a floor, two walls, a pool, a lift and up to 15 random bodies.
     pub(crate) fn world(&mut self) -> World {
         let rng = &mut self.rng;
         let config = Config {
@@ -51,7 +51,7 @@ impl Churn {
         world
     }
 
-    /// In bursts and lulls, so that bodies fall asleep and are woken.
+    /// Commands for a tick, in bursts and lulls, so that bodies fall asleep and are woken.
     pub(crate) fn commands(&mut self, world: &World) -> Vec<Command> {
         let cycle = u64::from(world.config().tick_rate) * 2;
         let count = match world.tick() % cycle < cycle / 4 {
@@ -119,7 +119,7 @@ impl Churn {
         Some(command)
     }
 
-    /// With one change.
+    /// Settings with one random change.
     fn changed_config(&mut self, mut config: Config) -> Config {
         let rng = &mut self.rng;
         match rng.below(8) {
@@ -179,7 +179,7 @@ impl Churn {
         Vec2::new(self.signed(fx!(5)), self.rng.range(fx!(0), fx!(3)))
     }
 
-    /// Usually zero, so that boxes come to rest.
+    /// Angle that is usually zero, so that boxes come to rest.
     fn angle(&mut self) -> Angle {
         if self.rng.chance(1, 3) { self.rng.angle() } else { Angle::ZERO }
     }
@@ -241,13 +241,13 @@ impl Churn {
         self.changed_shape(shape)
     }
 
-    /// Upwards and to a side.
+    /// Area that accelerates upwards and to a side.
     fn wind(&mut self) -> Area {
         let wind = Area::new().acceleration((self.rng.range(fx!(-9), fx!(9)), fx!(5)));
         wind.drag(self.rng.range(fx!(0), fx!(4)), fx!(1))
     }
 
-    /// Differs from `def` in at most one setting.
+    /// Copy of `def` that differs in at most one setting.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
         match rng.below(14) {
@@ -274,7 +274,7 @@ impl Churn {
     fn joint(&mut self, world: &World) -> Option<JointDef> {
         let (a, b) = (self.any_body(world)?, self.any_body(world)?);
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
-        // At B's origin, so that the joint starts without an error.
+        // The anchor is at B's origin, so that the joint starts without an error.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
         let mut def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor);
         if self.rng.chance(1, 3) {

@@ -18,7 +18,7 @@ struct Path {
 }
 
 impl Path {
-    /// `time` is in ticks.
+    /// Probe with the pose at `time`, in ticks.
     fn probe(&self, geometry: Geometry, time: Fx) -> Probe {
         let seconds = time / 60;
         let at = self.start + self.velocity.scale(seconds);
@@ -27,7 +27,7 @@ impl Path {
     }
 }
 
-/// About its centre.
+/// Random sensor about its centre.
 fn gate(rng: &mut Rng) -> Geometry {
     let turned = |half: Fx, rng: &mut Rng| {
         Rot::from_angle(Angle::from_radians(rng.range(fx!(-0.5), fx!(0.5))))
@@ -64,7 +64,7 @@ fn visitor(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Times in ticks at which a path enters and leaves a sensor that stands still.
+/// Times in ticks at which a path enters (`true`) and leaves a sensor that stands still.
 fn visits(world: &World, sensor: ShapeId, geometry: Geometry, path: &Path, end: Fx) -> Vec<(Fx, bool)> {
     let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
     let inside = |time: Fx| world.overlap_shape(&path.probe(geometry, time), filter).contains(&sensor);
@@ -97,7 +97,7 @@ fn a_thousand_crossings_are_noticed_in_order() {
     sweep::for_each(cases, check_course);
 }
 
-/// A visitor flies through three sensors, or they fly over it.
+/// A visitor flies through three sensors, or the sensors fly over the visitor.
 fn check_course(case: u64) {
     let mut rng = Rng::new(case);
     let speed = rng.range(fx!(3), fx!(399));
@@ -185,7 +185,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
         let start = Vec2::new(rng.range(fx!(-6), fx!(-2)), fx!(0));
         let def = BodyDef::dynamic().position(start).velocity((speed, fx!(0)));
         let flying = spawn(&mut world, def, super::ball(fx!(0.2)).restitution(fx!(1)).friction(fx!(0)));
-        // Outside of the fat box of the first tick, which is as long as the flight.
+        // The gate is outside of the fat box of the first tick, which covers the straight flight of that tick.
         let height = rng.range(fx!(1), fx!(3));
         let gate = super::rectangle(fx!(8), rng.range(fx!(0.01), fx!(0.5))).sensor();
         let gate = spawn(&mut world, BodyDef::fixed().position((fx!(-2), height)), gate);
@@ -196,7 +196,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
             run(&mut world, 1);
             let after = world.body(flying).expect("there").position();
             let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
-            // Naive oracle: a thousand points of the path.
+            // The oracle tests a thousand points of the path.
             let inside = |point: Vec2<Fx>| {
                 let probe = Probe::new(Geometry::circle(fx!(0.2)).expect("valid"), point).expect("valid");
                 world.overlap_shape(&probe, filter).contains(&gate)
@@ -268,7 +268,7 @@ fn switching_the_detection_of_sensors_begins_and_ends_overlaps() {
     assert_eq!((world.events().sensor_begin.len(), world.events().sensor_end.len()), (0, 1));
 }
 
-/// A visitor that has just left is not inside.
+/// A visitor that has left in this tick is not listed as inside.
 #[test]
 fn overlaps_are_those_of_the_end_of_the_tick() {
     let mut world = weightless();

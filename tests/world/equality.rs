@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use super::churn::Churn;
 use super::sweep;
 
-/// Must not affect results.
+/// Disturbance of a world that must not affect results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Variant {
     BruteForce,
@@ -64,7 +64,7 @@ impl Variant {
     }
 }
 
-/// Begun and not ended.
+/// Contacts and sensor overlaps that have begun and not ended.
 #[derive(Default)]
 struct Open {
     contacts: BTreeSet<ContactEvent>,
@@ -93,7 +93,8 @@ impl Open {
         }
     }
 
-    /// Shapes of open contacts and overlaps exist, the world lists the same overlaps, and their shapes touch.
+    /// Expects that the shapes of open contacts and overlaps exist, and that the world lists the same overlaps. The
+    /// shapes of an overlap must touch.
     fn check(&self, world: &World) {
         let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
         let ends = ends.chain(self.visits.iter().flat_map(|event| [event.0, event.1]));
@@ -111,7 +112,7 @@ impl Open {
     }
 }
 
-/// The invariants hold, and a refused command changes nothing.
+/// Executes a command. The invariants must hold, and a refused command must change nothing.
 fn execute_checked(world: &mut World, command: &Command) {
     let before = world.state_hash();
     let refused = world.execute(command).is_err();
@@ -119,7 +120,7 @@ fn execute_checked(world: &mut World, command: &Command) {
     assert!(!refused || world.state_hash() == before, "{command:?} was refused, but changed the world");
 }
 
-/// Proves that events were covered.
+/// Counts of events, which prove that events were covered.
 #[derive(Debug, Default)]
 struct Seen {
     slept: usize,
@@ -173,7 +174,7 @@ fn churn(seed: u64, ticks: u32, seen: &mut Seen) {
     }
 }
 
-/// Returns the sum of the counts.
+/// Runs all seeds, and returns the sum of the counts.
 fn churn_each(seeds: Vec<u64>) -> Seen {
     let total = Mutex::new(Seen::default());
     sweep::for_each(seeds, |seed| {

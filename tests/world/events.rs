@@ -55,7 +55,7 @@ fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     );
 }
 
-/// A hit at the speed v has an impulse of (1 + e) v times the reduced mass, at any position when the tick begins. A box
+/// A hit at the speed v has an impulse of (1 + e) v times the reduced mass, wherever in the tick the bodies meet. A box
 /// that lands flat has two contact points.
 #[test]
 fn a_hit_tells_the_impulse_of_the_whole_tick() {
@@ -130,7 +130,7 @@ fn contact_events_may_be_switched_off_and_on() {
     let (mut world, id, told) = landing(floor.events(silent), shape.events(silent));
     assert_eq!(told, 0);
 
-    // Switching events on reports the begin of a contact, and switching them off its end.
+    // Switching events on reports the begin of a contact. Switching them off reports its end.
     let id = shape_of(&world, id);
     world.set_shape(id, &shape).expect("valid");
     run(&mut world, 1);
@@ -186,7 +186,7 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
     }
 }
 
-/// They do not affect motion, and are equal with every backend.
+/// Hit events do not affect motion, and are equal with every backend.
 #[test]
 fn hits_change_nothing_but_themselves() {
     let fall = |wanted: bool| {

@@ -50,7 +50,7 @@ fn add_joint(world: &mut World, bodies: &[BodyId], rng: &mut Rng) {
     let anchor = body_a.transform().apply_inverse(body_b.position());
     let mut def = JointDef::new(a, b, random_kind(rng)).anchor_a(anchor);
     if body_a.kind() == BodyKind::Fixed && rng.chance(1, 2) {
-        // A is moved, so that the anchor is far from its origin.
+        // A is moved but the anchor stays in place, so that it is far from A's origin.
         let offset = Vec2::new(fx!(1000), fx!(-300));
         let position = body_a.position() - offset;
         let angle = body_a.angle();
@@ -103,7 +103,7 @@ fn joints_that_go_on_are_those_that_are_prepared_anew() {
         let mut anew = world.clone();
         let mut saved = world.save();
         for tick in 0..150 {
-            // Without a change, the batches of the last tick are used again.
+            // In most ticks nothing changes, and the batches of the last tick are used again.
             if rng.below(4) == 0 {
                 let mut same = rng.clone();
                 change(&mut world, &mut rng);

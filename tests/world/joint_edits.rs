@@ -35,7 +35,7 @@ fn kinds() -> [JointKind; 8] {
     ]
 }
 
-/// On a fixed anchor. The fixed body is there or far away.
+/// A body on an anchor of a fixed body, whose origin is near the anchor or far away.
 fn pendulum(kind: JointKind, ground: (Vec2<Fx>, Angle), swapped: bool) -> (World, BodyId, JointId) {
     let anchor = Vec2::new(fx!(3000), fx!(-7));
     let mut world = World::default();
@@ -70,7 +70,7 @@ fn an_anchor_far_away_on_a_fixed_body_holds_like_a_near_one() {
                 (near.joint_force(joint).expect("there"), far.joint_force(far_joint).expect("there"));
             let within = fx!(0.02) + force.length() / 100;
             assert!((force - far_force).length() < within, "{kind:?}: {force:?} N, {far_force:?} N");
-            // Anchors that are apart have different lever arms at A.
+            // Where the anchors come apart, the lever arms at A differ.
             assert!((torque - far_torque).abs() < within, "{kind:?}: {torque} N m, {far_torque} N m");
         }
     }
@@ -142,7 +142,7 @@ fn a_joint_yields_by_its_own_softness() {
         (Distance::rod(fx!(1)).into(), false),
         (Wheel::new().into(), false),
         (limit, false),
-        // A second joint, solved in a block with the first.
+        // A second joint is solved in a block with the first.
         (hinge, true),
         (Weld::rigid().into(), true),
     ] {
@@ -176,7 +176,7 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// Bit for bit, for joints of dynamic bodies.
+/// Joints of dynamic bodies give equal results bit for bit.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {
@@ -202,7 +202,7 @@ fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     assert_eq!(without, net(2), "all joints");
 }
 
-/// It pulls nothing, and its bodies collide and sleep.
+/// A disabled joint pulls nothing, and its bodies collide and sleep.
 #[test]
 fn a_disabled_joint_is_as_if_absent() {
     let build = |joined: bool| {
@@ -320,7 +320,7 @@ fn a_setter_of_a_part_that_is_missing_is_refused() {
     assert_eq!(linear.velocity.x, fx!(2));
 }
 
-/// A bridge of 12 kg on a hinge 1 m from its centre: motor, limit or spring bears 120 N m, the hinge 120 N.
+/// A bridge of 12 kg is on a hinge 1 m from its centre. The motor, limit or spring bears 120 N m, and the hinge 120 N.
 #[test]
 fn motor_limit_and_spring_are_told_apart() {
     let motor = Revolute::new().motor(fx!(0), fx!(500));
@@ -347,7 +347,7 @@ fn motor_limit_and_spring_are_told_apart() {
     }
 }
 
-/// Spring and motor bear the weight together, the motor at most its largest force.
+/// Spring and motor bear the weight together. The motor bears at most its largest force.
 #[test]
 fn the_springs_of_welds_and_motor_joints_are_told_apart() {
     let weld: JointKind = Weld::rigid().linear(fx!(4), fx!(1)).into();

@@ -10,7 +10,7 @@ fn close(a: Fx, b: Fx, tolerance: Fx) {
     assert!((a - b).abs() < tolerance, "{a} differs from {b}");
 }
 
-/// A ball hits a box of equal mass off centre, and gives it all of its velocity along the normal.
+/// A ball hits a box of equal mass off centre, and gives the box all of its velocity along the normal.
 #[test]
 fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     let mut world = weightless();
@@ -39,7 +39,8 @@ fn a_box_that_turns_takes_less() {
     spawn(&mut world, thrown, ball);
     run(&mut world, 60);
     let body = world.body(target).expect("there");
-    // m = 4 kg, I = 4 (2² + 2²) / 12 = 2.667 kg m², d = 0.8 m: an impulse of 10 / (0.25 + 0.25 + 0.24) = 13.51 N s.
+    // With m = 4 kg, I = 4 (2² + 2²) / 12 = 2.667 kg m² and d = 0.8 m, the impulse is 10 / (0.25 + 0.25 + 0.24) = 13.51
+    // N s.
     close(body.velocity().x, fx!(3.378), fx!(0.02));
     close(body.angular_velocity(), fx!(-4.054), fx!(0.05));
 }

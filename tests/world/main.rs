@@ -40,7 +40,7 @@ fn capsule(half_length: Fx, radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::capsule(a, b, radius).expect("valid"))
 }
 
-/// Its surface is at height 0.
+/// World with a floor whose surface is at height 0.
 fn world_with_floor() -> (World, BodyId) {
     let mut world = World::default();
     let floor = BodyDef::fixed().position((fx!(0), fx!(-1)));
@@ -64,7 +64,7 @@ fn is_asleep(world: &World, body: BodyId) -> bool {
     world.body(body).expect("there").is_asleep()
 }
 
-/// Validates the invariants after every tick.
+/// Simulates ticks, and validates the invariants after each one.
 fn run(world: &mut World, ticks: u32) {
     for _ in 0..ticks {
         world.step();

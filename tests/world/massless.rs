@@ -1,4 +1,5 @@
-//! Dynamic bodies without mass have no shape, only lines, or density 0. They coast, and push like kinematic ones.
+//! A dynamic body has no mass if it has no shape, only lines, or density 0. It coasts, and pushes like a kinematic
+//! body.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -66,7 +67,7 @@ fn damping_slows_a_body_without_mass_until_it_sleeps() {
 fn a_box_rests_on_a_platform_without_mass() {
     let mut world = World::default();
     let platform = world.spawn(&BodyDef::dynamic(), &[square(fx!(2)).density(fx!(0))]).expect("valid");
-    // It has no contact with fixed bodies, such as this wall.
+    // The platform has no contact with fixed bodies, such as this wall.
     let wall = BodyDef::fixed().position((fx!(3), fx!(0)));
     world.spawn(&wall, &[square(fx!(1.5))]).expect("valid");
     let load = BodyDef::dynamic().position((fx!(0), fx!(4)));
@@ -121,7 +122,7 @@ fn a_body_gains_and_loses_its_mass_with_its_shapes() {
     assert_eq!(world.body(body).expect("there").velocity(), falling);
 }
 
-/// Contacts and joints cease or begin to act, also in sleep.
+/// The bodies are awake or asleep when contacts and joints cease or begin to act.
 #[test]
 fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     let mut world = World::default();

@@ -65,7 +65,7 @@ fn a_named_body_moves_as_one_without_a_name() {
     assert_eq!(run_with(None), run_with(Some(name("ball"))));
 }
 
-/// Bytes may decode to a name that no text makes. The world refuses it.
+/// Decoding accepts any 16 bytes as a name, even bytes that no valid text encodes to. The world refuses such a name.
 #[test]
 fn invalid_bytes_are_refused_as_a_name() {
     let mut world = World::default();

@@ -1,4 +1,4 @@
-//! A restore brings back the saved state, whatever happened since and whatever snapshots share.
+//! A restore brings back the saved state, whatever happened since then and whatever snapshots share.
 
 use lockstep2d::codec;
 use lockstep2d::collision::BroadPhaseKind;
@@ -12,7 +12,7 @@ use super::sweep;
 use super::{ball, shape_of, spawn, square, weightless, world_with_floor};
 use lockstep2d::body::{BodyDef, Filter};
 
-/// Its digest is computed without caches.
+/// Copy of a world that computes its digest without caches.
 fn recomputed(world: &World) -> World {
     World::from_bytes(&world.to_bytes()).expect("its own bytes")
 }
@@ -24,7 +24,7 @@ fn assert_is(world: &World, saved: &(Snapshot, Vec<u8>), what: &str) {
     assert_eq!(world.validate(), Ok(()), "{what}");
 }
 
-/// Compares the kept digest with a new one after every command, refused ones included, and every step.
+/// Compares the kept digest with a new one after every command, even a refused one, and after every step.
 #[test]
 fn what_is_known_of_a_world_follows_every_change() {
     sweep::for_each((100..108).collect(), |seed| {
@@ -76,7 +76,7 @@ fn a_world_jumps_between_its_snapshots() {
                 assert_is(&world, &saves[tick + 1], &format!("seed {seed}, {from} to {tick}"));
             }
         }
-        // Into a world with another history.
+        // The snapshot is restored into a world with another history.
         let mut other = world_with_floor().0;
         other.restore(&saves[70].0);
         assert_is(&other, &saves[70], "another world");
@@ -147,7 +147,7 @@ fn a_reused_snapshot_is_as_good_as_new() {
     }
 }
 
-/// Limits the bytes per body, pair and joint. Eight ticks give equal hashes after a rollback.
+/// Snapshots have a limited number of bytes per body, pair and joint. After a rollback, eight ticks give equal hashes.
 #[test]
 fn snapshots_of_every_scene_are_small_and_come_back() {
     sweep::for_each(lockstep2d_scenes::ALL.iter().collect(), |scene| {

@@ -79,7 +79,7 @@ fn a_moving_sensor_notices_all_kinds() {
     }
 }
 
-/// A sensor's own mass would depend on its size.
+/// Mass that does not depend on the size of a sensor.
 fn mass() -> lockstep2d::body::MassSource {
     lockstep2d::body::MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) }
 }

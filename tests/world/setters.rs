@@ -44,7 +44,7 @@ fn a_given_mass_keeps_place_and_motion() {
     let body = world.body(id).expect("there");
     assert_eq!((body.position(), body.mass()), (Vec2::new(fx!(3), fx!(4)), fx!(10)));
     close(body.angular_velocity(), fx!(2));
-    // The new centre of mass is 0.25 m above the old one, and gets the velocity of that point.
+    // The new centre of mass is 0.25 m above the old one, and gets the velocity that the body has at the new centre.
     close(body.velocity().x, fx!(0.5));
     close(body.velocity_at(Vec2::new(fx!(3), fx!(4))).x, fx!(1));
     world.set_mass(id, MassSource::Shapes).expect("valid");
@@ -173,7 +173,7 @@ fn a_kinematic_body_goes_where_it_is_told_and_stops() {
     close(world.body(lift).expect("there").position().x, fx!(0.323));
 }
 
-/// The pushed body gets the velocity of its pusher.
+/// The pushed body gets the velocity of the body that pushes it.
 #[test]
 fn a_kinematic_body_pushes_on_its_way() {
     let mut world = weightless();

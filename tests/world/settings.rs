@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, World};
 
 use super::{ball, is_asleep, run, spawn, square, world_with_floor};
 
-/// At rest on the floor.
+/// Eight boxes at rest on the floor.
 fn stack(sub_steps: u32) -> (World, Vec<BodyId>) {
     let (mut world, _) = world_with_floor();
     set(&mut world, |config| config.solver.sub_steps = sub_steps);
@@ -29,7 +29,7 @@ fn set(world: &mut World, change: impl Fn(&mut Config)) {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Impulses of a warm start are converted to the new length of sub-steps.
+/// Impulses of a warm start are converted when the length of sub-steps changes.
 #[test]
 fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
     for (from, to, tick_rate) in [(4, 8, 60), (4, 16, 60), (8, 4, 60), (16, 4, 60), (4, 4, 120), (4, 8, 30)] {
@@ -44,12 +44,12 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             run(&mut world, 1);
             let speeds = boxes.iter().map(|&id| world.body(id).expect("there").velocity().y.abs());
             fastest = fastest.max(speeds.max().expect("eight"));
-            // Measured: at most 10.4 mm/s. Without the conversion of impulses: 21 to 81 mm/s, except for the change
-            // from 4 to 16 sub-steps.
+            // The largest speed measured is 10.4 mm/s. Without the conversion of impulses it is 21 to 81 mm/s, except
+            // for the change from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // Contacts have an equal frequency before and after the change, while 30 Hz are at most an eighth of
-                // the sub-step rate.
+                // The frequency of contacts does not change while their 30 Hz are at most an eighth of the sub-step
+                // rate.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }
@@ -103,7 +103,7 @@ fn a_world_continues_as_one_that_was_made_with_the_settings() {
     }
 }
 
-/// The combined material of touching shapes is cached, including the threshold.
+/// The combined material of touching shapes is cached, including the restitution threshold.
 #[test]
 fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
     let rebounds = |changed: bool| {

@@ -18,7 +18,7 @@ fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     (world, floor, boxes)
 }
 
-/// All boxes of a sleeping stack are awake a tick after a change.
+/// Expects that all boxes of a sleeping stack are awake a tick after a change.
 fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     let (mut world, floor, boxes) = sleeping_stack();
     change(&mut world, floor, boxes);
@@ -30,7 +30,7 @@ fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     world
 }
 
-/// Ticks change nothing but their counter, and simulate no bodies.
+/// Expects that ticks change only the tick counter, and simulate no bodies.
 fn assert_still(world: &mut World, ticks: u32) {
     let before = world.digest();
     let places: Vec<_> = world.bodies().map(|(_, body)| (body.position(), body.angle())).collect();
@@ -309,7 +309,7 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Each domino sleeps in an island of its own.
+/// Each domino sleeps in its own island.
 #[test]
 fn a_row_of_sleepers_wakes_in_one_tick() {
     let mut world = super::weightless();
@@ -322,9 +322,9 @@ fn a_row_of_sleepers_wakes_in_one_tick() {
     assert_eq!(world.stats().bodies, 500);
 }
 
-/// The support of a resting box is removed, while another body keeps their island awake. At 240 Hz the box is slower
-/// than its sleep speed after the first tick of its fall. If its ticks at rest were not counted anew, it would fall
-/// asleep in the air.
+/// The support of a resting box is removed, while another body keeps their island awake. At 240 Hz, after the first
+/// tick of its fall, the box is slower than its sleep speed. If the box's ticks at rest were not counted anew, the box
+/// would fall asleep in the air.
 #[test]
 fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     type Edit = fn(&mut World, BodyId) -> Result<(), WorldError>;
@@ -360,8 +360,8 @@ fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     }
 }
 
-/// The player keeps the seesaw down, and is in motion in every tick. After the jump, the seesaw begins to turn more
-/// slowly than its sleep speed.
+/// The player keeps the seesaw down, and is in motion in every tick. After the player's jump, the seesaw begins to turn
+/// more slowly than its sleep speed.
 #[test]
 fn a_seesaw_turns_back_when_the_player_leaves() {
     let mut world = World::default();

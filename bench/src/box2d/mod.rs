@@ -214,10 +214,11 @@ impl Engine for Box2d {
     }
 }
 
-/// Box2D's log messages would mix with the results and distort the times.
+/// Replaces Box2D's log, whose messages would mix with the results and distort the times.
 unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
-/// A contact of two non-static bodies is reported by both, and counted for body A.
+/// Whether a contact of a body is counted. Both bodies report a contact of two non-static bodies, which counts for body
+/// A.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
     // SAFETY: the shapes of a contact of the last step exist.
     unsafe {

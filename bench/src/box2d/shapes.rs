@@ -43,7 +43,7 @@ pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     Ok(def)
 }
 
-/// Events other than hits stay off, which is the default and faster.
+/// Adds a shape. Events other than hits stay off, which is the default and faster.
 pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
     ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
     // SAFETY: the function has no preconditions.
@@ -96,7 +96,7 @@ fn frame(frame: &JointFrame) -> b2Transform {
     b2Transform { p: vector(frame.anchor), q: rotation(frame.angle) }
 }
 
-/// The scenes contain only revolute joints.
+/// Definition of a joint. The scenes contain only revolute joints.
 pub fn joint_def(joint: &JointDef, ends: [b2BodyId; 2], config: &Config) -> Result<b2RevoluteJointDef> {
     let JointKind::Revolute(hinge) = &joint.kind else { bail!("only revolute joints are supported") };
     // SAFETY: the function has no preconditions.

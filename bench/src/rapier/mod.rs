@@ -21,9 +21,10 @@ pub struct Rapier {
     config: Config,
     threads: usize,
     bodies: Slots<RigidBodyHandle>,
-    /// Links beyond the first of each chain, which is one collider.
+    /// Number of links that are not colliders, because each chain is one collider: all links but the first of each
+    /// chain.
     extra_links: usize,
-    /// Bodies to put to sleep after the first step, whose new contacts wake them.
+    /// Bodies to put to sleep after the first step. New contacts in that step wake them.
     to_sleep: Vec<RigidBodyHandle>,
     saves: [Vec<u8>; SAVES],
 }

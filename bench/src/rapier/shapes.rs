@@ -20,7 +20,7 @@ fn radians(angle: Angle) -> f32 {
     angle.to_radians().to_num()
 }
 
-/// Sleeping is disabled per body: rapier2d has no such switch for the world.
+/// Builder of a body. Sleeping is disabled per body, because rapier2d has no such switch for the world.
 pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyBuilder> {
     ensure!(matches!(def.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &def.settings;
@@ -42,7 +42,7 @@ pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyB
         .enabled(def.enabled))
 }
 
-/// The links of a chain become one polyline.
+/// Colliders of a body. The links of a chain become one polyline.
 pub fn colliders(shapes: &[ShapeDef]) -> Result<Vec<ColliderBuilder>> {
     let mut colliders = Vec::new();
     let is_link = |shape: &&ShapeDef| matches!(shape.geometry, Geometry::Link { .. });
@@ -90,7 +90,7 @@ fn collider(shape: &ShapeDef) -> Result<ColliderBuilder> {
         Geometry::Polygon(polygon) => {
             let points = corners(polygon, shape.offset);
             let radius = polygon.radius().to_num();
-            // rapier2d ignores the rounding radius.
+            // rapier2d ignores the rounding radius when it computes a mass.
             let mass = density * rounded_area(&points, radius);
             let collider = match upright_box(&points) {
                 Some((centre, [hx, hy])) if radius == 0.0 => {
@@ -152,11 +152,12 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
         .collision_groups(groups(&shape.filter)))
 }
 
-/// Bits of categories in rapier2d; the other 28 stand for negative groups.
+/// The lowest 4 of rapier2d's bits stand for categories. The other 28 stand for negative groups.
 const CATEGORY_BITS: u32 = 0xF;
 
-/// rapier2d has 32 categories and no group numbers. A negative group becomes one of 28 categories, in rotation, that
-/// does not collide with itself. So ragdolls whose groups differ by a multiple of 28 pass through each other.
+/// Filter in rapier2d, which has 32 categories and no group numbers. A negative group becomes one of 28 categories, in
+/// rotation. Such a category does not collide with itself, so ragdolls whose groups differ by a multiple of 28 pass
+/// through each other.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));
@@ -174,9 +175,9 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// The stiffness is rapier2d's default. With the 60 Hz and the damping ratio of 2 of the other engines, the cloth of
-/// `joint_grid` moves at 13 m/s in rapier2d after 100 steps, instead of 1.4 m/s. rapier2d has one motor per axis, so a
-/// spring takes precedence, and the hinges of ragdolls lack their friction.
+/// Joint in rapier2d, with rapier2d's default stiffness. With the 60 Hz and the damping ratio of 2 of the other
+/// engines, the cloth of `joint_grid` moves at 13 m/s in rapier2d after 100 steps, instead of 1.4 m/s. rapier2d has one
+/// motor per axis, so a spring replaces the motor, and the hinges of ragdolls lack their friction.
 pub fn joint(def: &JointDef) -> Result<GenericJoint> {
     let JointKind::Revolute(hinge) = &def.kind else { bail!("only revolute joints are supported") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));
@@ -197,7 +198,7 @@ pub fn joint(def: &JointDef) -> Result<GenericJoint> {
             damping,
         );
     } else if let Some(motor) = hinge.motor {
-        // Only the maximum torque limits the motor, as in the other engines.
+        // As in the other engines, the motor is limited only by its maximum torque.
         joint = joint
             .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
             .motor_velocity(JointAxis::AngX, motor.speed.to_num(), 1e6)

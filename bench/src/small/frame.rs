@@ -12,13 +12,13 @@ use crate::growth::World;
 use crate::measure::timed;
 use crate::stats::median;
 
-/// Frames in a round.
+/// Number of frames in a round.
 const FRAMES: usize = 20;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Frame {
     pub world: &'static str,
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
     /// CPU time of a frame of lockstep2d in microseconds, median of the rounds.
     pub frame_us: f64,
@@ -31,7 +31,7 @@ pub struct Frame {
     pub rapier: Saving,
 }
 
-/// Saves and hashes of an engine.
+/// Cost of the saves and hashes of an engine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Saving {
     /// CPU time of a save and its hash in microseconds.
@@ -43,7 +43,7 @@ pub struct Saving {
 }
 
 struct Round {
-    /// CPU time in microseconds.
+    /// CPU time of a frame in microseconds.
     frame_us: f64,
     saving: Saving,
 }
@@ -94,8 +94,9 @@ fn saving(rounds: &[Round]) -> Saving {
     }
 }
 
-/// Slot 0 holds the start of the frame, and the other slots hold its ticks. The time of saves and hashes is the
-/// difference between frames with and without them, because reading the clock takes as long as saving a small world.
+/// Measures frames of which slot 0 holds the start, and the other slots hold the ticks. The time of saves and hashes is
+/// the difference between frames with and without them, because reading the clock takes as long as saving a small
+/// world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));

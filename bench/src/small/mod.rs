@@ -1,4 +1,4 @@
-//! Measures worlds of the size of games: the time of a step, and of a rollback frame.
+//! Measures worlds of the size of games: the time of a step, and the time of a rollback frame.
 
 mod frame;
 mod worlds;
@@ -35,7 +35,7 @@ pub const SINGLE: [(World, u32); 2] = [
 ];
 /// Approximate numbers of bodies.
 pub const SIZES: [u32; 4] = [6, 24, 96, 384];
-/// Steps before the timed ones.
+/// Number of steps before the timed ones.
 const UNTIMED: usize = 120;
 const TIMED: usize = 480;
 
@@ -47,7 +47,7 @@ fn config() -> Config {
 #[derive(Clone, Debug, Serialize)]
 pub struct Cell {
     pub world: &'static str,
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
     /// CPU time of a step of lockstep2d in microseconds, median of the rounds.
     pub us: f64,
@@ -63,7 +63,7 @@ pub struct Cell {
 
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
-    /// Always true: distinguishes the summary from a cell.
+    /// Always true. Distinguishes the summary from the line of a cell.
     pub summary: bool,
     /// Geometric mean of the ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,

@@ -11,7 +11,7 @@ use super::config;
 
 type Setup = Result<SandboxSetup, WorldError>;
 
-/// The angle is zero.
+/// A body and its position. Its angle is zero.
 type Placed = (BodyId, Vec2<Fx>);
 
 fn dynamic(scene: &mut Builder, at: Vec2<Fx>, shape: &ShapeDef) -> Result<Placed, WorldError> {
@@ -25,7 +25,7 @@ fn hinge(scene: &mut Builder, a: Placed, b: Placed, at: Vec2<Fx>, hinge: Revolut
     Ok(())
 }
 
-/// The top of the floor is at y = 0.
+/// Adds a floor with its top at y = 0, and two walls.
 fn room(scene: &mut Builder, half_width: Fx) -> Result<(), WorldError> {
     let wall =
         |x: Fx| Polygon::rectangle(fx!(0.5), fx!(60)).map(|wall| ShapeDef::new(wall).offset((x, fx!(60))));
@@ -108,7 +108,7 @@ pub fn ragdolls(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// A torso with a head, two arms and two legs.
+/// Adds a torso with a head, two arms and two legs.
 fn ragdoll(scene: &mut Builder, at: Vec2<Fx>, index: u32) -> Result<(), WorldError> {
     let group = -i32::try_from(index + 1).unwrap_or(i32::MAX);
     let mut limb = |x: Fx, y: Fx, half: Fx, radius: Fx| {
@@ -143,7 +143,7 @@ pub fn stack(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Bridges of 22 planks, with a box and a ball on each.
+/// Bridges of 22 planks. Each bridge carries a box and a ball.
 pub fn bridges(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let post = (scene.spawn(BodyDef::fixed(), &[])?, Vec2::ZERO);
@@ -167,7 +167,7 @@ pub fn bridges(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Cars of three bodies with driven wheels on a hilly chain.
+/// Cars on a hilly chain. A car has three bodies, two of which are driven wheels.
 pub fn cars(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let cars = i64::from((bodies / 3).max(1));
@@ -186,7 +186,7 @@ pub fn cars(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// A closed chain: hills from x = -20 m to x = `width` - 1 m, and a bottom at y = -10 m.
+/// Adds a closed chain: hills from x = -20 m to x = `width` - 1 m, and a bottom at y = -10 m.
 fn terrain(scene: &mut Builder, width: i64) -> Result<(), WorldError> {
     let heights = [fx!(0), fx!(0.3), fx!(0.6), fx!(0.3), fx!(0), fx!(-0.2)];
     let hills = (-20..width).zip(heights.into_iter().cycle());

@@ -1,7 +1,7 @@
 //! Targets whose input is a file or packets.
 //!
-//! The first byte of a file's input selects the rest: the bytes of a file, or changes of an original file, with or
-//! without repaired checksums.
+//! The first byte of an input selects how the other bytes make a file: they are its bytes, or they describe changes of
+//! an original file. The checksums are repaired or not.
 
 pub mod replay;
 pub mod report;
@@ -13,11 +13,11 @@ use crate::source::Source;
 
 struct Attempt<'a> {
     file: Vec<u8>,
-    /// The original, if `file` is a changed copy of one.
+    /// The original file, if `file` was made by changing it.
     original: Option<&'a [u8]>,
 }
 
-/// Makes a file from an input. `repair` corrects all checksums.
+/// Makes a file from an input. `repair` corrects all checksums of a file.
 fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<u8>)) -> Attempt<'a> {
     let Some((&mode, rest)) = bytes.split_first() else {
         return Attempt { file: Vec::new(), original: None };

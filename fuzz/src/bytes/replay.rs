@@ -64,7 +64,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
         Verdict::Unverifiable { .. } => judge::<Sandbox>(&attempt.file),
         verdict => verdict,
     };
-    // Pieces of a recording may complete its truncated copy.
+    // A piece of a recording may make its truncated copy complete again.
     let changed = attempt.original.is_some() && !ORIGINALS.contains(&attempt.file);
     assert!(!changed || !verdict.is_match(), "a changed file must not match");
     verdict.name()
@@ -78,7 +78,7 @@ fn judge<G: Game>(file: &[u8]) -> Verdict {
     verdict
 }
 
-/// Records the inputs of a file again.
+/// Records the inputs of a file again, and returns the new file.
 fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     let reader = Reader::open(file, &LIMITS).expect("a match");
     let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");

@@ -1,6 +1,6 @@
-//! Sends changed packets to two peers that play and to one that joins them after 20 ticks.
+//! Sends changed packets to two peers that play and to a third one that joins them after 20 ticks.
 //!
-//! After 20 to 39 ticks the attacks of the input follow. Each takes one of the last 64 packets.
+//! After 20 to 39 ticks the attacks of the input follow. Each attack changes one of the last 64 packets and sends it.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 
@@ -84,7 +84,7 @@ fn play(session: &mut lockstep2d::session::Session, now: u64) {
     while session.next_event().is_some() {}
 }
 
-/// Corrects the checksum of a packet of the match with this tag.
+/// Corrects the checksum of a packet of the match with the tag `tag`.
 pub fn repair(tag: u64, bytes: &mut [u8]) {
     if let Some((sum, body)) = bytes.split_first_chunk_mut::<4>() {
         let digest = twox_hash::XxHash3_128::oneshot_with_seed(tag, body).to_le_bytes();

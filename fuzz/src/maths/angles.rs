@@ -23,7 +23,7 @@ pub(super) fn check(source: &mut Source<'_>) {
     }
 }
 
-/// The error is at most 0.8 units of 2^-30.
+/// Checks that sine and cosine have an error of at most 0.8 units of 2^-30.
 fn sines(angle: Angle) {
     let (sin, cos) = sin_cos(angle.to_bits());
     for (found, exact) in [(angle.sin(), sin), (angle.cos(), cos)] {
@@ -54,12 +54,12 @@ fn units(source: &mut Source<'_>, angle: Angle) {
     assert_eq!(bits(Angle::from_turns(x)), wrapped(x.to_bits().into()));
     assert_eq!(bits(Angle::from_degrees(x)), wrapped(halves_away(&(of(x) / exact::integer(360)), 32)), "{x}");
     let exact = halves_up(&(of(x) / turn), 32);
-    // The engine multiplies by a rounded constant: up to a sixteenth of a unit.
+    // The engine multiplies by a rounded constant, which adds an error of up to a sixteenth of a unit.
     let off = wrapped(bits(Angle::from_radians(x)) - exact + 1);
     assert!(off <= BigInt::from(2), "{x} rad");
 }
 
-/// The error is at most 0.7 units of 2^-32 turn.
+/// Checks that the angle of a vector has an error of at most 0.7 units of 2^-32 turn.
 fn directions(source: &mut Source<'_>) {
     let v = if source.one_in(2) {
         vector(source)

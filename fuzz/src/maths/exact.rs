@@ -25,12 +25,12 @@ pub(crate) fn ratio(numerator: i64, denominator: i64) -> Exact {
     Exact::new(numerator.into(), denominator.into())
 }
 
-/// `value * 2^fraction_bits`, rounded to nearest, halves towards +infinity.
+/// `value * 2^fraction_bits`, rounded to nearest. Halves are rounded towards +infinity.
 pub(crate) fn halves_up(value: &Exact, fraction_bits: u32) -> BigInt {
     (value * integer(BigInt::one() << fraction_bits) + ratio(1, 2)).floor().to_integer()
 }
 
-/// `value * 2^fraction_bits`, rounded to nearest, halves away from zero.
+/// `value * 2^fraction_bits`, rounded to nearest. Halves are rounded away from zero.
 pub(crate) fn halves_away(value: &Exact, fraction_bits: u32) -> BigInt {
     let magnitude = halves_up(&value.abs(), fraction_bits);
     if value.is_negative() { -magnitude } else { magnitude }
@@ -67,7 +67,7 @@ fn arc_tangent_of_inverse(n: i64) -> BigInt {
 
 /// Sine and cosine of `bits / 2^32` turns.
 pub(crate) fn sin_cos(bits: u32) -> (BigInt, BigInt) {
-    // Reduces the angle to at most an eighth of a turn, where the series is short.
+    // The angle is reduced to at most an eighth of a turn, where the series is short.
     let quarter = bits.wrapping_add(1 << 29) >> 30;
     let rest = i64::from(bits.wrapping_sub(quarter << 30) as i32);
     let angle: BigInt = (&*PI * rest) >> 31;

@@ -13,7 +13,7 @@ use lockstep2d::math::{Fx, Vec2};
 /// Tries operations until the bytes end. Returns their number.
 ///
 /// # Panics
-/// When a result is not within the documented error, or not saturated.
+/// When a result is not within the documented error, or is not saturated where it should be.
 pub fn run(bytes: &[u8]) -> u64 {
     let mut source = Source::new(bytes);
     let mut tried = 0;
@@ -29,7 +29,7 @@ pub fn run(bytes: &[u8]) -> u64 {
     tried
 }
 
-/// A number near a limit, ordinary, or with few bits.
+/// A number near a limit, an ordinary number, or a number with few bits.
 fn number(source: &mut Source<'_>) -> Fx {
     match source.below(3) {
         0 => source.edge(),

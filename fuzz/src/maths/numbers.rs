@@ -105,7 +105,7 @@ fn sums(source: &mut Source<'_>) {
     assert_eq!(BigInt::from(dot.to_bits()), saturated(halves_up(&exact, 27), 32), "{a:?} . {b:?}");
 }
 
-/// The error is at most the rounding of the result plus a relative 2^-31.
+/// Checks that the error is at most the rounding of the result plus a relative 2^-31.
 fn reciprocals(source: &mut Source<'_>) {
     let bits = source.within(4, (1 << 62) - 1);
     let a = small(source);

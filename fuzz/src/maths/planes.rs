@@ -17,7 +17,7 @@ pub(super) fn check(source: &mut Source<'_>) {
         if !crowded {
             return vector(source);
         }
-        // Few coordinates make many points collinear.
+        // With few different coordinates, many points are collinear.
         let few = [Fx::ZERO, Fx::ONE, Fx::DELTA, -Fx::ONE, Fx::MAX, Fx::MIN];
         Vec2::new(source.pick(&few), source.pick(&few))
     };

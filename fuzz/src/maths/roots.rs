@@ -44,18 +44,18 @@ fn square(bits: i64) -> BigInt {
     BigInt::from(bits).pow(2)
 }
 
-/// Rounded to nearest and saturated: `(2 r - 1)^2 <= 4 x <= (2 r + 1)^2`.
+/// Checks that a root is rounded to nearest and saturated: `(2 r - 1)^2 <= 4 x <= (2 r + 1)^2`.
 fn assert_root(found: BigInt, x: &BigInt, bits: u32) {
     let rounded: BigInt = (root(&(x * 4)) + 1) / 2;
     assert_eq!(found, saturated(rounded, bits), "the root of {x}");
 }
 
-/// Each component has an error of at most 0.76 units.
+/// Checks that each component has an error of at most 0.76 units.
 fn assert_unit(unit: Vec2<Unit>, x: i64, y: i64) {
-    // 80 more fractional bits than the vector.
+    // The length has 80 more fractional bits than the vector.
     let length = root(&((square(x) + square(y)) << 160));
     for (found, component) in [(unit.x, x), (unit.y, y)] {
-        // In units of 2^-70.
+        // The exact component is in units of 2^-70.
         let exact: BigInt = (BigInt::from(component) << (70 + 80)) / &length;
         let error: BigInt = (BigInt::from(found.to_bits()) << 40) - exact;
         assert!(error.abs() * 100 <= (BigInt::one() << 40) * 76 + 1000, "{unit:?} of ({x}, {y})");

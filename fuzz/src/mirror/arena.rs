@@ -1,4 +1,4 @@
-//! Slots: values with generations, and the list of vacant slots.
+//! Slots, which are values with generations, and the list of vacant slots.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub(super) struct Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// Picks the index of an occupied slot; `None` if no slot is occupied.
+    /// Picks the index of an occupied slot, or `None` if no slot is occupied.
     pub(super) fn pick(&self, source: &mut Source<'_>) -> Option<usize> {
         let occupied = |(index, slot): (usize, &Slot<T>)| slot.value.is_some().then_some(index);
         let occupied: Vec<usize> = self.slots.iter().enumerate().filter_map(occupied).collect();
@@ -43,7 +43,7 @@ impl<T> Arena<T> {
         self.handle(self.slots.len() - 1)
     }
 
-    /// Removes a value as a world does.
+    /// Removes a value in the way that a world does.
     pub(super) fn remove(&mut self, index: usize) -> Option<T> {
         let slot = self.slots.get_mut(index)?;
         let value = slot.value.take()?;
@@ -56,7 +56,7 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Reorders vacant slots, or adds one, possibly with its generations used up.
+    /// Reorders vacant slots, or adds one. Its generations may be used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

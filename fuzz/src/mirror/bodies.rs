@@ -109,7 +109,7 @@ impl State {
         self.weigh(index)
     }
 
-    /// Computes a body's mass, and the boxes of a fixed body, as a new world does.
+    /// Computes a body's mass, and the boxes of a fixed body's shapes, as a new world does.
     pub(super) fn weigh(&mut self, index: usize) -> Option<()> {
         let body = self.bodies.get(index)?.clone();
         let shapes: Vec<_> =
@@ -149,7 +149,7 @@ impl State {
             8 => shape.def.events = fresh.events,
             9 => shape.def.material.surface_speed = Fx::from_bits(source.within(-(400 << 32), 400 << 32)),
             10 => {
-                // A box unrelated to the shape.
+                // The new box has nothing to do with the shape.
                 let (a, b) = (pair(source, i64::MIN, i64::MAX), pair(source, i64::MIN, i64::MAX));
                 shape.fat = Aabb::new(vector(a).min(vector(b)), vector(a).max(vector(b)));
             }

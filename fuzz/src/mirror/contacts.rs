@@ -53,7 +53,7 @@ impl KeptManifold {
         }
     }
 
-    /// Zeroes the points beyond `count`.
+    /// Sets the values that belong to points beyond `count` to zero.
     fn cut(&mut self, count: u8) {
         match count {
             0 => *self = KeptManifold::default(),
@@ -133,7 +133,7 @@ impl State {
         Some(())
     }
 
-    /// Moves a contact between the active and the sleeping contacts, where its place is wrong.
+    /// Moves a contact from the active to the sleeping contacts or back, so that it is in the wrong list.
     fn alter_sleeping_contacts(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
             true => (&mut self.contacts, &mut self.sleeping_contacts),

@@ -84,7 +84,7 @@ impl State {
         codec::encode(self)
     }
 
-    /// Makes a change that is often valid, or none if the drawn change is impossible.
+    /// Makes a change that is often valid, or no change if the drawn one is impossible.
     pub fn alter(&mut self, source: &mut Source<'_>) {
         let before = self.clone();
         if self.try_alter(source).is_none() {

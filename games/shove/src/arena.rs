@@ -14,11 +14,11 @@ use lockstep2d::world::{Config, World};
 
 /// Ticks per second.
 pub(crate) const TICK_RATE: u32 = 60;
-/// Radius of the whole platform, in metres.
+/// Radius of the platform at the start of a round, in metres.
 pub const START_RADIUS: Fx = fx!(12);
 /// Width of a ring that crumbles, in metres.
 const RING: Fx = fx!(0.5);
-/// Rings of the platform that crumble in a round.
+/// Number of rings of the platform that crumble in a round.
 pub(crate) const RINGS: u8 = 15;
 
 /// Distance of the start positions from the centre, in metres.
@@ -43,7 +43,7 @@ pub enum Role {
     Bumper,
     /// A plate, which recharges the dash of a player.
     Plate,
-    /// The bar in the centre, and its flails.
+    /// The bar in the centre, or a part of its flails.
     Mill,
 }
 
@@ -86,7 +86,7 @@ fn polar(radius: Fx, angle: Angle) -> Vec2<Fx> {
     Rot::from_angle(angle).apply_wide(Vec2::new(radius, Fx::ZERO))
 }
 
-/// `index / count` of a full turn.
+/// Angle of `index / count` of a full turn.
 fn part(index: u8, count: u8) -> Angle {
     Angle::from_turns(Fx::from_num(index) / i64::from(count))
 }
@@ -122,7 +122,7 @@ pub(crate) fn build() -> Result<World, WorldError> {
     Ok(world)
 }
 
-/// A motor turns a bar about the origin, with a flail at each end.
+/// Adds a bar that a motor turns about the origin, with a flail at each end.
 fn build_mill(world: &mut World) -> Result<(), WorldError> {
     let axle = world.spawn(&at(BodyDef::fixed(), Vec2::ZERO, Role::Mill), &[])?;
     let bar = ShapeDef::new(Polygon::rectangle(fx!(2.2), fx!(0.2))?).density(fx!(4));
@@ -135,7 +135,7 @@ fn build_mill(world: &mut World) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// A flail that points outwards: three links of 0.5 m and a ball.
+/// Hangs a flail that points outwards on the bar: three links of 0.5 m and a ball.
 fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError> {
     let link = Geometry::capsule(Vec2::new(fx!(-0.2), fx!(0)), Vec2::new(fx!(0.2), fx!(0)), fx!(0.08))?;
     let link = ShapeDef::new(link).density(fx!(6));
@@ -199,7 +199,7 @@ pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let outside: Vec<_> = found.map(|(id, body)| (id, Role::of(body))).collect();
     let mut seats = Vec::new();
     for (id, role) in outside {
-        // The body was just found in the world.
+        // The body was just found in the world, so this cannot fail.
         let _ = world.despawn(id);
         if let Role::Player(seat) = role {
             seats.push(seat);

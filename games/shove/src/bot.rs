@@ -15,10 +15,10 @@ use crate::view::Player;
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// Predicted distance from the edge at which the bot turns back, in metres.
+    /// Distance from the edge, in metres. The bot turns back if it would be closer than this in 0.3 s.
     caution: Fx,
     pad: Pad,
-    /// Ticks for which the bot keeps its pad.
+    /// Number of ticks for which the bot keeps its pad.
     hold: u32,
 }
 
@@ -37,7 +37,7 @@ impl Bot {
         (0..setup.seats).map(|seat| Bot::new(setup.seed, seat)).collect()
     }
 
-    /// The pad for the next tick. To be called once per tick.
+    /// The pad for the next tick. Must be called once per tick.
     pub fn pad(&mut self, game: &Shove) -> Pad {
         if self.hold > 0 {
             self.hold -= 1;
@@ -60,7 +60,8 @@ impl Bot {
             return if margin < Fx::ZERO { back.with(Pad::DASH) } else { back };
         }
         let distance = |other: &Player| other.position.distance(me.position);
-        // Among equally close opponents, the next seat after its own: otherwise all bots would attack the first.
+        // If several opponents are equally close, the bot attacks the next seat after its own. Otherwise all bots would
+        // attack the first seat.
         let others = (1..game.seats()).filter_map(|next| game.player((self.seat + next) % game.seats()));
         let others = others.filter(Player::is_alive);
         let Some(other) = others.min_by_key(distance) else {
@@ -77,7 +78,7 @@ impl Bot {
         let way = there - me.position;
         let distance = way.length();
         let outwards = other.position.normalized().map_or(Vec2::ZERO, Vec2::widen);
-        // Outward component of the way to the opponent.
+        // Component of the way to the opponent that points outwards.
         let inside = way.dot(outwards);
         if inside > fx_mul(distance, fx!(0.4)) {
             let push = Pad::towards(way);

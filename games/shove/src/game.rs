@@ -38,7 +38,7 @@ pub struct Save {
 }
 
 impl Save {
-    /// Bytes of this save that it does not share with others.
+    /// Number of bytes that this save does not share with other saves.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         self.world.rollback_bytes() + size_of::<Rules>()
@@ -66,7 +66,7 @@ impl Shove {
         Some((id, Role::of(self.world.body(id)?)))
     }
 
-    /// Bumpers kick the bodies that have hit them.
+    /// Kicks the bodies that have hit a bumper.
     fn kick(&mut self) -> Result<(), WorldError> {
         let kicked = |shape, bumper, away: Vec2<Unit>| {
             let ((body, _), (_, role)) = (self.owner(shape)?, self.owner(bumper)?);
@@ -97,7 +97,7 @@ impl Shove {
         }
     }
 
-    /// Stops at the first change that the world refuses, as after loading an untrusted save.
+    /// Stops at the first change that the world refuses. This may happen after an untrusted save was loaded.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {
@@ -136,7 +136,7 @@ impl Game for Shove {
             self.rules.seat(&mut self.world, seat, present);
         }
         let pads = &inputs[..inputs.len().min(self.seats())];
-        // Refused changes are skipped, as on every machine.
+        // Every machine stops at the same refused change.
         let _ = self.try_step(pads);
         self.world.step();
         self.charge();
@@ -166,8 +166,9 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// Limits of bodies and shapes and numbers of pairs and joints, times the iterations of the solver, plus the square
-    /// of the limit of shapes for new pairs. The limits count because a new round may add all players and crates.
+    /// The limits of bodies and shapes plus the numbers of pairs and joints, times the iterations of the solver. The
+    /// square of the limit of shapes is added for new pairs. The limits count because a new round may add all players
+    /// and crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

@@ -1,9 +1,9 @@
 //! Shove: two to four players push each other off a platform that crumbles.
 //!
-//! The view is from above. A player is a disc, controlled by a [`Pad`] of one byte, that can dash when the dash is
-//! recharged. A mill in the centre swings two flails, bumpers kick bodies, plates recharge the dash, and crates lie
-//! around. A player whose centre leaves the platform falls, and in a round each player still standing gets a point. The
-//! last one standing wins the round, unless the time runs out first.
+//! The view is from above. A player is a disc that is controlled by a [`Pad`] of one byte, and can dash when the dash
+//! is recharged. A mill in the centre swings two flails, bumpers kick bodies, plates recharge the dash, and crates lie
+//! around. A player whose centre leaves the platform falls. In a round, each player still standing then gets a point.
+//! The last one standing wins the round, unless the time runs out first.
 //!
 //! The game is the example for lockstep, rollback, late join and the viewer.
 //!

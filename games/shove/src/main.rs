@@ -20,7 +20,7 @@ fn main() -> ExitCode {
         .run()
 }
 
-/// The whole platform, with the round and the scores as title.
+/// Picture of the whole platform, with the round and the scores as title.
 fn view_of_match(game: &Shove) -> View {
     let corner = Vec2::new(START_RADIUS, START_RADIUS);
     let scores: Vec<_> = game.players_in_order().map(|player| player.score.to_string()).collect();

@@ -40,7 +40,7 @@ pub enum OnlineError {
     Address {
         /// The address as given.
         address: String,
-        /// Error of the system; `None` if the lookup had no result.
+        /// Error of the system, or `None` if the lookup had no result.
         why: Option<io::Error>,
     },
     /// The socket cannot be opened.
@@ -134,7 +134,7 @@ pub fn play_due<T: Transport>(
     Ok(())
 }
 
-/// Describes an event in a line, with seats from 0.
+/// Describes an event in one line. Seats are counted from 0.
 #[must_use]
 pub fn describe<T: Transport>(peer: &Peer<Shove, T>, event: &PeerEvent) -> String {
     let name = |id: PeerId| match peer.seats_of(id)[..] {

@@ -59,20 +59,20 @@ impl Pad {
         self.0 == Pad::ABSENT.0
     }
 
-    /// Direction as a unit vector; `None` if none is held or opposite ones cancel.
+    /// Direction of the pad as a unit vector. `None` if no direction is held or opposite ones cancel each other.
     #[must_use]
     pub fn direction(self) -> Option<Vec2<Unit>> {
         let axis = |plus, minus| Fx::from_num(i32::from(self.has(plus)) - i32::from(self.has(minus)));
         Vec2::new(axis(Pad::RIGHT, Pad::LEFT), axis(Pad::UP, Pad::DOWN)).normalized()
     }
 
-    /// Pad closest to a direction; no direction for the zero vector.
+    /// Pad whose direction is closest to a given one. The pad has no direction for the zero vector.
     #[must_use]
     pub fn towards(direction: Vec2<Fx>) -> Pad {
         if direction == Vec2::ZERO {
             return Pad::default();
         }
-        // The boundaries between pads are then at multiples of an eighth of a turn.
+        // With this offset, the boundaries between pads are at multiples of an eighth of a turn.
         let sixteenth = Angle::from_bits(1 << 28);
         let eighth = (Angle::of(direction) + sixteenth).to_bits() >> 29;
         Pad::COMPASS[eighth as usize]

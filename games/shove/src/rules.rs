@@ -32,7 +32,7 @@ pub enum Phase {
     Over,
 }
 
-/// Seat, taken or empty. Seats beyond those of the match stay empty.
+/// A seat, which is taken or empty. Seats beyond those of the match stay empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Seat {
     pub(crate) present: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Seat {
     pub(crate) recharge: u8,
     /// One point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub(crate) score: u32,
-    /// Rounds won.
+    /// Number of rounds won.
     pub(crate) won: u32,
 }
 
@@ -50,20 +50,21 @@ pub(crate) struct Seat {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Rules {
     pub(crate) seats: [Seat; SEATS_MAX],
-    /// Number of the round, from 1; 0 before the first round that counts.
+    /// Number of the round, counted from 1. It is 0 before the first round that counts.
     pub(crate) round: u8,
     pub(crate) phase: Phase,
     /// Ticks until the phase ends by time.
     pub(crate) ticks_left: u16,
-    /// Rings that have crumbled.
+    /// Number of rings that have crumbled.
     pub(crate) rings: u8,
-    /// Players at the start of the round. With fewer than two, it is practice and does not count.
+    /// Number of players at the start of the round. With fewer than two players, the round is practice and does not
+    /// count.
     starters: u8,
     rng: Rng,
 }
 
 impl Rules {
-    /// The first tick begins a round with the players that are present.
+    /// State before the first tick, which begins a round with the players that are present.
     pub(crate) fn new(seed: u64) -> Self {
         Rules {
             seats: [Seat::default(); SEATS_MAX],
@@ -89,8 +90,8 @@ impl Rules {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// A player who leaves loses its body, which is not a fall. A player who joins gets one in the next round, which
-    /// begins at once after practice.
+    /// Sets whether the player of a seat is present. A player who leaves loses its body, which is not a fall. A player
+    /// who joins gets a body in the next round. After practice, that round begins at once.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;
@@ -173,7 +174,8 @@ impl Rules {
         Ok(())
     }
 
-    /// Players that fall lose their bodies, and in a round each player still standing gets a point for each.
+    /// Clears the bodies in the seats of fallen players. In a round, each player still standing gets a point for each
+    /// of them.
     pub(crate) fn fall(&mut self, fallen: &[u8]) {
         for &seat in fallen {
             if let Some(seat) = self.seats.get_mut(usize::from(seat)) {

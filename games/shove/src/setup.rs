@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Setup {
     /// Number of seats, 2 to 4.
     pub seats: u8,
-    /// Number of rounds, 1 to 99, without practice.
+    /// Number of rounds, 1 to 99. Practice does not count.
     pub rounds: u8,
     /// Random seed for the placement of players and crates.
     pub seed: u64,

@@ -16,15 +16,15 @@ pub struct Player {
     pub present: bool,
     /// Body of the player, until it falls.
     pub body: Option<BodyId>,
-    /// Position in metres; zero without a body.
+    /// Position in metres, or zero without a body.
     pub position: Vec2<Fx>,
-    /// Velocity in m/s; zero without a body.
+    /// Velocity in m/s, or zero without a body.
     pub velocity: Vec2<Fx>,
     /// Ticks until the player can dash again.
     pub recharge: u32,
     /// One point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub score: u32,
-    /// Rounds won.
+    /// Number of rounds won.
     pub won: u32,
 }
 
@@ -55,7 +55,7 @@ impl Shove {
         self.setup.seats.into()
     }
 
-    /// Player on a seat, from 0, if there is such a seat.
+    /// Player on a seat, counted from 0. `None` if there is no such seat.
     #[must_use]
     pub fn player(&self, seat: usize) -> Option<Player> {
         let seat = self.rules.seats.get(seat).filter(|_| seat < self.seats())?;
@@ -82,7 +82,7 @@ impl Shove {
         arena::radius(self.rules.rings)
     }
 
-    /// Number of the round, from 1; 0 before the first round that counts.
+    /// Number of the round, counted from 1. It is 0 before the first round that counts.
     #[must_use]
     pub const fn round(&self) -> u8 {
         self.rules.round

@@ -7,7 +7,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
 use lockstep2d_shove::{Bot, Pad, Save, Setup, Shove};
 
-/// Pads of bots, and the hash of each tick.
+/// Pads of bots, and the hash after each tick.
 fn played(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     let mut bots = Bot::each(setup);
     played_by(setup, ticks, |_, game| bots.iter_mut().map(|bot| bot.pad(game)).collect())
@@ -28,7 +28,7 @@ fn played_by(
     log
 }
 
-/// Plays a log again, with `before` called before each tick, and checks every hash.
+/// Plays a log again, calls `before` before each tick, and checks every hash.
 fn play_again(
     setup: &Setup,
     log: &[(Vec<Pad>, StateHash)],
@@ -129,7 +129,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     let mut played = 0;
     for _ in 0..2000 {
         let mut bytes = bytes.clone();
-        // Most of the damage is in the rules, at the end of the save.
+        // Most of the changed bytes are in the rules, at the end of the save.
         let back = if rng.chance(3, 4) { 80 } else { bytes.len() };
         let at = bytes.len()
             - 1
@@ -149,7 +149,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     assert!(played > 100, "{played}");
 }
 
-/// Plays mispredicted pads, loads the save, and plays the right pads.
+/// Plays wrong predictions of pads, loads the save, and plays the right pads.
 #[test]
 fn rolling_back_leaves_no_trace() {
     for (setup, log) in logs() {

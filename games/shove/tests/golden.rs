@@ -7,7 +7,7 @@ use std::process::Command;
 use lockstep2d::replay::{Limits, Verdict, verify};
 use lockstep2d_shove::Shove;
 
-/// Scene, and hash after 3000 ticks with seed 1.
+/// Each scene, and its hash after 3000 ticks with seed 1.
 const GOLDENS: [(&str, &str); 3] = [
     ("duel", "beb2260c5fc5270b8515672a1a9cb758"),
     ("match", "b4d013dd5baafe9507b6310257b4c461"),

@@ -10,7 +10,7 @@ mod mutation;
 
 use lockstep2d_shove::Shove;
 
-/// Few files, because the matches are long.
+/// Number of damaged files. It is small because the matches are long.
 const FILES: u64 = 300;
 
 #[test]

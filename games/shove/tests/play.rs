@@ -1,5 +1,5 @@
-//! Matches between processes over UDP: all peers end in the same state, and their replays verify. Whole matches take
-//! their real time on a machine that keeps up, so only `.ci/run` runs them.
+//! Matches between processes over UDP: all peers end in the same state, and their replays verify. A whole match takes
+//! as long as in reality and needs a machine that keeps up, so only `.ci/run` runs whole matches.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -14,10 +14,10 @@ use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
 use lockstep2d_tests::sweep;
 
-/// Seconds that peers wait for a silent player: enough for a process without CPU time.
+/// Seconds that peers wait for a silent player. This is long enough for a process that gets no CPU time for a while.
 const PATIENCE: &str = "8";
 
-/// Folder that is removed on drop.
+/// A folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -38,7 +38,7 @@ impl Drop for Folder {
     }
 }
 
-/// A free port.
+/// An address with a free port.
 fn free_address() -> String {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
 }
@@ -70,7 +70,7 @@ fn hash_of(output: &Output) -> String {
     end["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
 }
 
-/// A host and three joining players.
+/// Starts a host and three joining players.
 fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     let address = free_address();
     let common = [modes, &["--players", "4", "--ticks", ticks]].concat();
@@ -81,7 +81,7 @@ fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     children
 }
 
-/// Pads of each tick of a replay, which may be cut.
+/// Pads of each tick of a replay, which may end in the middle.
 fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     let mut pads = Vec::new();
     let mut reader = Reader::open(replay, &Limits::default()).unwrap();
@@ -94,7 +94,7 @@ fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     pads
 }
 
-/// Waits for a replay that is being written.
+/// Waits until a replay that is being written has a number of ticks.
 fn wait_for_ticks(replay: &Path, ticks: usize) {
     let has_them =
         |replay: Vec<u8>| Reader::open(&replay, &Limits::default()).is_ok() && pads(&replay).len() >= ticks;
@@ -151,7 +151,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
             assert!(matches!(verdict, Verdict::Match { ticks: 600, .. }), "{name}: {verdict}");
             assert_eq!(pads(replay), all);
         }
-        // The replay of the killed process is a prefix of the others.
+        // The replay of the killed process is the beginning of the others.
         let seen = pads(&cut);
         assert!(seen.len() >= 120 && all.starts_with(&seen), "{name}: {} ticks", seen.len());
         let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];
@@ -193,7 +193,7 @@ fn wrong_seats_are_refused() {
     host.wait().unwrap();
 }
 
-/// The others continue without waiting, and the replay has an end.
+/// After an interrupt the other players continue without waiting, and the replay of the interrupted process has an end.
 #[cfg(unix)]
 #[test]
 #[ignore = "plays in real time: run by .ci/run"]

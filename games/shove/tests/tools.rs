@@ -21,7 +21,7 @@ fn shove(arguments: &[&str]) -> String {
     String::from_utf8(outcome.stdout).expect("the output should be UTF-8")
 }
 
-/// A path without a file.
+/// A path at which there is no file.
 fn path(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("shove-{}-{name}", std::process::id()));
     let _ = fs::remove_file(&path);

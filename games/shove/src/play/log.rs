@@ -15,13 +15,13 @@ use serde_json::{Value, json};
 #[derive(Debug)]
 pub(super) struct Log {
     json: bool,
-    /// Played ticks, and when their number last grew.
+    /// Number of played ticks, and the time when it last grew.
     tick: Option<(u64, Duration)>,
-    /// Longest time without a tick, and its end.
+    /// Longest time without a tick, and the time when it ended.
     stall: (Duration, Duration),
     delay: Option<u16>,
     desync: Option<u64>,
-    /// This peer has left, or all have finished: no more ticks are played.
+    /// Whether this peer has left or all have finished. No more ticks are played then.
     is_over: bool,
 }
 
@@ -31,7 +31,7 @@ impl Log {
         Log { json, tick: None, stall, delay: None, desync: None, is_over: false }
     }
 
-    /// Writes the address of this peer in JSON only.
+    /// In JSON, writes the address of this peer. Otherwise writes nothing.
     pub(super) fn say_bound(&self, peer: &mut UdpPeer) -> std::io::Result<()> {
         let address = peer.transport_mut().local_address()?.to_string();
         if self.json {
@@ -83,7 +83,7 @@ impl Log {
         }
     }
 
-    /// Figures for the last line.
+    /// Figures about this peer for the last line.
     pub(super) fn summary(&self, peer: &UdpPeer) -> Value {
         let statistics = peer.session().map(|session| session.statistics());
         let replayed = statistics.map(|statistics| (statistics.replayed, statistics.replayed_max));
@@ -134,7 +134,7 @@ pub(super) fn say_error(json: bool, error: &dyn Error) {
     eprintln!("error: {error}");
 }
 
-/// Ignores errors: the match continues if the reader of the output has gone.
+/// Prints a line, and ignores errors: the match continues if the reader of the output has gone.
 fn print(line: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stdout().lock(), "{line}");
 }

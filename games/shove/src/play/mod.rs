@@ -22,7 +22,7 @@ use lockstep2d_shove::online::{self, UdpPeer};
 use arguments::Arguments;
 use log::Log;
 
-/// Interval of updates, for which received packets may wait.
+/// Interval of updates. A received packet may wait for this time.
 const UPDATE_INTERVAL: Duration = Duration::from_millis(1);
 
 pub(crate) fn command() -> Command {
@@ -44,7 +44,7 @@ pub(crate) fn run(matches: &ArgMatches) -> Exit {
     }
 }
 
-/// Returns the first desync.
+/// Plays a match, and returns the first desync.
 fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     for path in arguments.output.iter().chain(&arguments.report) {
         check_absent(path)?;
@@ -58,7 +58,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         peer.end_at(ticks);
     }
     let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
-    // The match is summarised even after an error.
+    // The summary is written even after an error.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
     if let (Some(file), Some(path)) = (&mut file, &arguments.output) {
@@ -67,7 +67,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         if !is_recorded {
             eprintln!("no replay: this peer was not in the match from the first tick");
         }
-        // A pipe is not removed.
+        // The replay may go to a pipe, which is not removed.
         if path.is_file() && (end.ticks == 0 || !is_recorded) {
             fs::remove_file(path)?;
         }
@@ -76,8 +76,8 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     played
 }
 
-/// The file is written during the match, so a killed process leaves a replay without its end. Two processes cannot
-/// create the same file.
+/// Opens the file of the replay or the report. The replay is written during the match, so a killed process leaves a
+/// replay without its end. Two processes cannot create the same file.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     let file = match File::create_new(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -137,7 +137,7 @@ fn take_part(
             // The peer is not in a match yet.
             (_, None) => break,
             (1, Some(_)) => peer.leave(),
-            // Leaves without waiting for the others.
+            // The second signal: this process exits without waiting for the others.
             (_, Some(_)) => break,
         }
         thread::sleep(UPDATE_INTERVAL);

@@ -15,11 +15,11 @@ pub const SEAT_COLOURS: [Colour; 4] =
 
 /// Neutral grey, visible on light and dark backgrounds.
 const NEUTRAL: Colour = Colour::hex(0x8a_8f98);
-/// Background of the scores, whose colours are bright.
+/// Background of the scores, which have bright colours.
 const PLATE: Colour = Colour::hex(0x14_181d);
 /// Colour of the headline.
 const TITLE: Colour = Colour::hex(0xe4_e7eb);
-/// Segments of a circle.
+/// Number of segments of a circle.
 const CORNERS: u16 = 48;
 /// Recharge time of a dash, in ticks.
 const RECHARGE: f32 = 75.0;
@@ -33,7 +33,7 @@ pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
     draw_scores(game, list, camera);
 }
 
-/// The round and its phase.
+/// Text with the round and its phase.
 pub(crate) fn headline(game: &Shove) -> String {
     let seconds = u32::from(game.ticks_left()).div_ceil(game.tick_rate());
     let present = game.players_in_order().filter(|player| player.present).count();
@@ -50,7 +50,7 @@ pub(crate) fn headline(game: &Shove) -> String {
     }
 }
 
-/// The original edge and the current one.
+/// Draws the original edge of the platform and the current one.
 fn draw_platform(game: &Shove, list: &mut DrawList, camera: &Camera) {
     let ring = |radius| arc(camera, Vec2::ZERO, camera.length(radius), 1.0);
     list.line(ring(START_RADIUS), NEUTRAL.with_opacity(90), 1.0);
@@ -65,7 +65,7 @@ fn draw_player(world: &World, seat: usize, player: &Player, list: &mut DrawList,
     let radius = camera.length(radius_of(world, body));
     let disc = arc(camera, player.position, radius, 1.0);
     list.polygon(disc.skip(1), colour, Colour::hex(0x00_0000).with_opacity(160), 1.5);
-    // A full circle when the dash is ready.
+    // The arc is a full circle when the dash is ready.
     let charge = 1.0 - (player.recharge as f32 / RECHARGE).min(1.0);
     if charge > 0.0 {
         let width = if player.recharge == 0 { 3.0 } else { 1.5 };
@@ -106,8 +106,8 @@ fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     }
 }
 
-/// Colour and text of a seat: its number and points, in brackets if the player has fallen, or a dash if the seat is
-/// empty.
+/// Colour and text of a seat. The text is the seat's number and its points. The points are in brackets if the player
+/// has fallen. An empty seat has a hyphen instead.
 fn score((seat, player): (usize, Player)) -> (Colour, String) {
     let points = match player {
         Player { present: false, .. } => "-".into(),
@@ -117,7 +117,7 @@ fn score((seat, player): (usize, Player)) -> (Colour, String) {
     (SEAT_COLOURS[seat % SEAT_COLOURS.len()], format!("{}: {points}", seat + 1))
 }
 
-/// Part of a circle, clockwise from the top, with the radius in pixels.
+/// Points of a part of a circle, clockwise from the top. The radius is in pixels.
 fn arc(camera: &Camera, centre: Vec2<Fx>, radius: f32, part: f32) -> impl Iterator<Item = [f32; 2]> {
     let [x, y] = camera.place(centre);
     (0..=CORNERS).map(move |corner| {

@@ -1,4 +1,4 @@
-//! The viewer of Shove: matches of two people at one keyboard, with bots, or over a network, and replays.
+//! The viewer of Shove: matches of two people at one keyboard, with bots, or over a network. It also shows replays.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod decorate;
@@ -47,7 +47,7 @@ pub fn left() -> Controls<Pad> {
     button(controls, Key::Shift, Pad::DASH)
 }
 
-/// Keys of the other person: the arrows, and Enter or Control to dash.
+/// Keys of the other person: the arrow keys, and Enter or Control to dash.
 #[must_use]
 pub fn right() -> Controls<Pad> {
     let keys = [

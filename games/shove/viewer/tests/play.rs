@@ -25,7 +25,7 @@ fn machine() -> Player<Shove> {
     Player::Bot(Rc::new(bot))
 }
 
-/// Two people, and bots on the other seats.
+/// A match of two people, with bots on the other seats.
 fn for_two(seed: u64, bots: u8) -> Netplay {
     let setup = Setup { seats: 2 + bots, seed, ..Setup::default() };
     let players = [person(left()), person(right()), machine(), machine()];
@@ -211,7 +211,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
         assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
-    // No peer answers the leaving one, which waits for at most half a second.
+    // No peer answers the host, which leaves and waits for at most half a second.
     let [host, _] = &mut guests;
     host.close();
     assert!(host.status().ends_with("out of the match"), "{}", host.status());
@@ -247,7 +247,7 @@ fn the_viewer_has_scenes_and_opens_replays_of_this_game_only() {
         app.draw().texts().iter().map(|text| text.text.clone()).collect::<Vec<_>>()
     };
     assert!(texts(&mut app).iter().any(|text| text.starts_with("1: ")), "{:?}", texts(&mut app));
-    // The state has no world.
+    // The displayed state leaves out the world.
     app.handle(Event::Pressed(Key::Character('t')));
     let state = texts(&mut app);
     assert!(state.iter().any(|text| text.starts_with("rules.seats[0].score")), "{state:?}");
