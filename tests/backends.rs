@@ -119,8 +119,8 @@ fn faulty_world(seed: u64) -> World {
         |width, height| ShapeDef::new(Polygon::rectangle(width, height).expect("a rectangle of this size"));
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
     let hub = MassSource::Given { mass: fx!(3), centre: Vec2::ZERO, gyration: fx!(0.1) };
-    let mut last = None;
     for row in 0..10 {
+        let mut last = None;
         let floor = fx!(10) * row;
         let ground = BodyDef::fixed().position((fx!(0), floor - fx!(1)));
         world.spawn(&ground, &[rectangle(fx!(100), fx!(1))]).expect("a valid body");
