@@ -136,7 +136,7 @@ fn faulty_world(seed: u64) -> World {
                     (body.position(at(fx!(0.045))), rectangle(fx!(0.5), fx!(0.05)))
                 }
                 1 if rng.below(3) == 0 => {
-                    (body.mass(hub).position(at(fx!(0.5))).angular_velocity(fx!(1500)), ball)
+                    (body.mass(hub).position(at(fx!(0.5))).angular_velocity(fx!(3000)), ball)
                 }
                 2 => (body.position(at(fx!(0.6))).velocity(falling), ball.restitution(fx!(0.5))),
                 _ => (body.position(at(fx!(0.495))).velocity(falling), rectangle(fx!(0.5), fx!(0.5))),
