@@ -302,6 +302,33 @@ fn a_lift_that_comes_up_takes_the_character_along() {
     }
 }
 
+/// Its feet have moved with the platform meanwhile, but a jump starts with the velocity of the platform.
+#[test]
+fn a_rider_that_was_not_moved_for_some_ticks_keeps_the_speed_of_the_platform() {
+    for (waits, teleport) in [(0, None), (1, None), (29, None), (0, Some(fx!(-20)))] {
+        let mut world = World::default();
+        let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.5)).expect("valid"));
+        let platform = BodyDef::kinematic().position((fx!(0), fx!(-0.5))).velocity((fx!(3), fx!(0)));
+        let platform = world.spawn(&platform, &[slab]).expect("valid");
+        let mut state = MoverState::at(at(fx!(0), fx!(0.71)));
+        for _ in 0..5 {
+            world.step();
+            state.velocity.y = fx!(-1);
+            state = world.move_character(&pill(), &state, QueryFilter::default()).state;
+        }
+        assert!(state.is_on_ground(), "{state:?}");
+        for _ in 0..=waits {
+            world.step();
+        }
+        if let Some(x) = teleport {
+            world.set_transform(platform, (x, fx!(-0.5)), Angle::ZERO).expect("there");
+        }
+        state.velocity = at(fx!(0), fx!(5));
+        let jumped = world.move_character(&pill(), &state, QueryFilter::default()).state;
+        assert_eq!(jumped.velocity, at(fx!(3), fx!(5)), "{waits} ticks, to {teleport:?}");
+    }
+}
+
 #[test]
 fn extreme_characters_do_not_panic() {
     let world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);

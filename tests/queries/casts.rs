@@ -311,3 +311,18 @@ fn turning_casts_do_not_depend_on_the_broad_phase() {
     }
     assert!(hits > 300 && given_up > 50, "{hits} hits, {given_up} given up");
 }
+
+#[test]
+fn a_cast_from_within_a_shape_starts_inside_with_and_without_a_turn() {
+    let mut world = World::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+    world.spawn(&BodyDef::fixed().position((fx!(4), fx!(0))), &[ball]).expect("valid");
+    let probe = Probe::new(Geometry::circle(fx!(1)).expect("valid"), at(fx!(5), fx!(0))).expect("valid");
+    for initial_overlap in [InitialOverlap::Report, InitialOverlap::Resist] {
+        let filter = QueryFilter::default().initial_overlap(initial_overlap);
+        let way = at(fx!(-1), fx!(0));
+        let straight = world.cast_shape(&probe, way, filter).expect("the ball");
+        let turning = world.cast_turning(&probe, way, fx!(0.1), filter).expect("the ball");
+        assert!(straight.starts_inside && turning.starts_inside, "{straight:?} {turning:?}");
+    }
+}

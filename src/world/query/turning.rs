@@ -120,7 +120,7 @@ impl Turning {
         let (travelled, turned) = self.sweep.at(fraction);
         let there = self.support.rotated(turned).moved(to_grid(travelled));
         let touch = proximity(&SupportShape::of(other, origin), &there, origin);
-        let starts_inside = fraction == Fx::ZERO && start.distance < Fx::ZERO;
+        let starts_inside = start.distance < Fx::ZERO;
         CastHit { shape, fraction, travelled, point: touch.point_a, normal: touch.normal, starts_inside }
     }
 }

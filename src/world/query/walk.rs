@@ -92,13 +92,17 @@ impl<'a> Walk<'a> {
         } else {
             body.position() + arm_now - ground.point
         };
-        if by == Vec2::ZERO {
-            return Some(Carrier { body: ground.body, velocity: body.velocity_at(ground.point) });
+        if by != Vec2::ZERO {
+            let hit = self.cast_among(&self.probe, by, Overlaps::Pass, Some(ground.body));
+            self.advance(hit.map_or(by, |(travelled, _)| travelled));
         }
-        let hit = self.cast_among(&self.probe, by, Overlaps::Pass, Some(ground.body));
-        self.advance(hit.map_or(by, |(travelled, _)| travelled));
-        let rate = i64::from(self.world.state.config.tick_rate);
-        let velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
+        // A body that `World::move_to` has moved has no velocity after the tick. Other bodies may have moved for several
+        // ticks since the last move of the character, or may have been placed elsewhere.
+        let mut velocity = body.velocity_at(ground.point);
+        if velocity == Vec2::ZERO {
+            let rate = i64::from(self.world.state.config.tick_rate);
+            velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
+        }
         Some(Carrier { body: ground.body, velocity })
     }
 
