@@ -380,10 +380,10 @@ export interface JointOptions {
     teeth?: readonly [number, number];
     /** Radius of the wheel in metres, 0.001 to 128, negative for a rack on the other side (rack). */
     radius?: Num;
-    /** Positions of the wheels on both sides in the world, in metres (pulley). */
+    /** Positions of the wheels on both sides in the world, in metres (pulley, needed). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` the length
-     * follows from the poses. */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). Needed without `anchor`;
+     * with `anchor` the length follows from the poses. */
     length?: Num;
     /** The length on A's side plus `ratio` times the length on B's side is at most `length` (pulley). 0.25 to 4: 1 by
      * default. */
@@ -1027,12 +1027,14 @@ export interface ReplayGame<Saved = unknown> {
 /** Goes to any tick of a replay with a game. */
 export class ReplayDriver<Saved = unknown> {
     #private;
-    /** The game has to be in the state before the first tick. */
+    /** The game has to be in the state before the first tick. The replay must not have been read, and only this driver
+     * may read it. */
     constructor(replay: Replay, game: ReplayGame<Saved>);
     /** The number of ticks that led to the current state. */
     readonly tick: number;
     /** Goes to a tick, from a saved state. Throws `RECORD` if the game diverges from the file; the driver then stays at
-     * that tick, and earlier ticks can be reached. */
+     * that tick, and earlier ticks can be reached. An error of the game is thrown as it is. After it, and if the replay
+     * was read without this driver, `seek` throws `VALUE` unless a saved state leads to the tick. */
     seek(tick: number): void;
     /** Goes forward by a tick, which is simulated. Returns false at the end. */
     step(): boolean;
@@ -1044,7 +1046,8 @@ export class ReplayDriver<Saved = unknown> {
     [Symbol.dispose](): void;
 }
 
-/** Parameters of a match and of a peer. */
+/** Parameters of a match and of a peer. `seats`, `inputBytes`, `tickRate`, `patience` and `matchTag` have to be equal
+ * for all peers. */
 export interface MatchOptions {
     /** Number of seats of the match, 1 to 64. */
     seats: number;
@@ -1076,7 +1079,7 @@ export interface MatchOptions {
     seatWithin?: number;
     /** Packets with another tag are ignored. 0 by default. */
     matchTag?: bigint | number;
-    /** Milliseconds for which play waits for a missing peer: 2000 by default. Equal for all peers. */
+    /** Milliseconds for which play waits for a missing peer: 2000 by default. */
     patience?: number;
     /** Number of this peer, of 32 bits: random by default. Use a new one each time the page is loaded. */
     peer?: number | undefined;
@@ -1085,8 +1088,9 @@ export interface MatchOptions {
     key?: bigint | undefined;
     /** Secret numbers of 64 bits against packets with forged addresses: random by default. */
     secret?: readonly [bigint, bigint] | undefined;
-    /** Data that all peers have to agree on, for example versions, rules and setup, at most 512 bytes: none by default.
-     * A peer with a different offer is refused. */
+    /** Data that all peers have to agree on, at most 512 bytes. A peer with a different offer is refused. By default
+     * `nativeOffer` of the options that have to be equal, without rules and setup. An offer of your own should contain
+     * those options as well. */
     offer?: Uint8Array | undefined;
     /** Address of a participant of the match to join. Without it, a match is opened. */
     contact?: Uint8Array | undefined;
@@ -1237,8 +1241,10 @@ export class MatchDriver<Saved = unknown> {
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
-/** The offer of a native `Peer<G>` (Rust). `setup` has the canonical bytes of `G::Setup`, and is empty for `()`. */
+/** The offer of a native `Peer<G>` (Rust), with the version of the engine's arithmetic. `setup` has the canonical bytes
+ * of `G::Setup`, and is empty for `()`. */
 export function nativeOffer(options: {
+    /** Name of the rules. */
     rules: string;
     /** 1 by default. */
     rulesVersion?: number;

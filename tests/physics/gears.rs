@@ -55,7 +55,23 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
+<<<<<<< HEAD
 /// A motor turns pairs of wheels against a brake for a minute.
+=======
+/// The fit would divide by the number of teeth.
+#[test]
+fn a_gear_without_teeth_cannot_be_fitted() {
+    let mut world = world(fx!(0));
+    let (a, b) = (wheel(&mut world, fx!(1), fx!(0)), wheel(&mut world, fx!(1), fx!(2)));
+    for (teeth_a, teeth_b) in [(0, 1), (1, 0), (0, 0), (i32::MIN, 1)] {
+        let def = JointDef::new(a, b, Gear::new(teeth_a, teeth_b));
+        let fitted = world.fit_joint(&def);
+        assert!(matches!(fitted, Err(WorldError::JointOutOfRange { .. })), "{teeth_a} {teeth_b}: {fitted:?}");
+    }
+}
+
+/// Pairs of wheels against a brake for a minute.
+>>>>>>> fix-npm
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [

@@ -30,11 +30,12 @@ typedef int32_t ls2d_status;
 /* An object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. */
-#define LS2D_FX(whole) ((ls2d_fx)((int64_t)(whole) * 4294967296))
-#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | has no operands
+ * that are floats, so that a float, which would be truncated, is an error of the compiler. */
+#define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
+#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / ((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
-#define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
+#define LS2D_DEGREES(whole) ((ls2d_angle)LS2D_FX_RATIO(whole, 360))
 /* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */
 #define LS2D_NO_ID UINT64_MAX
 /* Version of this header, to be compared with ls2d_api_version(). */
@@ -64,7 +65,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_NUMBER 10
 /* An error in the library. The objects of the call are unusable. */
 #define LS2D_INTERNAL 11
-/* `LS2D_INTERNAL` has left the object unusable. It can be freed. */
+/* An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed. */
 #define LS2D_BROKEN 12
 /* There are too many objects. */
 #define LS2D_EXHAUSTED 13
@@ -131,12 +132,12 @@ typedef uint32_t ls2d_handle;
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* A body of a world. The lowest 21 bits are its slot, the others count earlier bodies in that slot. Less than
- * 2^53, so that a JavaScript number is exact, except for `LS2D_NO_ID`. */
+/* Handle of a body of a world. The lowest 21 bits are the slot, the others count earlier bodies in that slot. A
+ * handle is less than 2^53, so that a JavaScript number holds it exactly. Only `LS2D_NO_ID` is larger. */
 typedef uint64_t ls2d_body;
-/* A shape of a world, encoded like a body. */
+/* Handle of a shape of a world, encoded like that of a body. */
 typedef uint64_t ls2d_shape;
-/* A joint of a world, encoded like a body. */
+/* Handle of a joint of a world, encoded like that of a body. */
 typedef uint64_t ls2d_joint;
 
 /* Kind of a body: does not move. */
@@ -262,7 +263,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_SEATED 2
 /* Event: `peer` loses `seat` at `tick`. */
 #define LS2D_EVENT_UNSEATED 3
-/* Event: play stalls for inputs of `peer`. `value` is 1 if it is heard, also through other peers. */
+/* Event: play stalls for inputs of `peer`. `value` is 1 if that peer is heard, directly or through others. */
 #define LS2D_EVENT_WAITING 4
 /* Event: play continues. */
 #define LS2D_EVENT_RESUMED 5
@@ -274,12 +275,12 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_DESYNC 8
 /* Event: `peer` has issued two different inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the other peers do not keep the inputs that this peer lacks. It has to join again. */
+/* Event: the other peers may have dropped inputs that this peer lacks. This peer has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
 /* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
 /* Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
- * Restore it before the next request. */
+ * Restore that state before the next request. */
 #define LS2D_EVENT_STATE 12
 /* Event: the downloaded bytes are not a valid state; they are requested again. */
 #define LS2D_EVENT_BAD_STATE 13
@@ -362,7 +363,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_AFTER 1024
 /* Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing: the mean. Of two rules, the larger number applies. */
+/* Rule of mixing: the mean. If two shapes have different rules, the one with the larger number applies. */
 #define LS2D_MIX_AVERAGE 0
 /* Rule of mixing: the square root of the product. */
 #define LS2D_MIX_GEOMETRIC_MEAN 1
@@ -397,9 +398,9 @@ typedef struct ls2d_hash {
 
 /* A random number generator, to be kept in the state of a game. */
 typedef struct ls2d_rng {
-    /* Its state. */
+    /* State of the generator. */
     uint64_t state;
-    /* Its stream, an odd number. */
+    /* Stream of the generator, an odd number. */
     uint64_t increment;
 } ls2d_rng;
 
@@ -433,7 +434,7 @@ typedef struct ls2d_config {
     ls2d_fx restitution_threshold;
     /* Largest speed of a body in m/s. */
     ls2d_fx speed_max;
-    /* Distance in metres at which shapes get contact points, more if they approach each other. */
+    /* Distance in metres within which shapes get contact points. It is larger for shapes that approach each other. */
     ls2d_fx speculative_distance;
     /* Largest margin in metres of the bounding boxes in the broad phase. */
     ls2d_fx fat_margin;
@@ -553,7 +554,7 @@ typedef struct ls2d_explosion {
     ls2d_fx falloff;
     /* Impulse in N s per metre of the width of a shape, as seen from the centre. */
     ls2d_fx impulse;
-    /* Categories of shapes that it acts on. */
+    /* Categories of shapes that the explosion acts on. */
     uint64_t mask;
 } ls2d_explosion;
 
@@ -589,7 +590,8 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Shapes of one group other than 0 always collide if it is positive, and never if it is negative. */
+    /* Two shapes with an equal group always collide if the group is positive, never if it is negative. 0 is no
+     * group. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
@@ -597,7 +599,7 @@ typedef struct ls2d_shape_def {
     uint32_t restitution_mixing;
     /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
-    /* Acceleration in m/s² of bodies in the area, along the axes of its body. */
+    /* Acceleration in m/s² of bodies in the area, along the axes of the area's body. */
     ls2d_vec2 area_acceleration;
     /* Force in N per m² of the covered part of a body, along the axes of the area's body. */
     ls2d_vec2 area_force;
@@ -611,7 +613,7 @@ typedef struct ls2d_shape_def {
     ls2d_fx area_density;
     /* Acceleration in m/s² towards the centre of the area, at `attraction_radius`. */
     ls2d_fx attraction_acceleration;
-    /* Distance in metres with full attraction. Nearer to the centre it decreases linearly to 0. */
+    /* Distance in metres with full attraction. Nearer to the centre the attraction decreases linearly to 0. */
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
@@ -621,8 +623,8 @@ typedef struct ls2d_shape_def {
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named by a flag is read only with that
- * flag, except that a pulley reads `length`. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
+ * only with that flag, except that a pulley reads `length`. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -726,7 +728,7 @@ typedef struct ls2d_query_filter {
 typedef struct ls2d_ray_hit {
     /* The shape that the ray meets. */
     ls2d_shape shape;
-    /* Its body. */
+    /* Body of that shape. */
     ls2d_body body;
     /* Fraction of the translation, 0 to 1. */
     ls2d_fx fraction;
@@ -742,7 +744,7 @@ typedef struct ls2d_ray_hit {
 typedef struct ls2d_cast_hit {
     /* The shape that is met. */
     ls2d_shape shape;
-    /* Its body. */
+    /* Body of that shape. */
     ls2d_body body;
     /* Fraction of the translation, 0 to 1. */
     ls2d_fx fraction;
@@ -760,7 +762,7 @@ typedef struct ls2d_cast_hit {
 typedef struct ls2d_closest_point {
     /* The nearest shape. */
     ls2d_shape shape;
-    /* Its body. */
+    /* Body of that shape. */
     ls2d_body body;
     /* Distance in metres; negative inside. */
     ls2d_fx distance;
@@ -786,7 +788,7 @@ typedef struct ls2d_probe {
     ls2d_angle angle;
     /* Position of the shape's centre in the world, in metres. */
     ls2d_vec2 position;
-    /* Its geometry; other fields of the definition have no effect. */
+    /* Geometry of the probe; other fields of the definition have no effect. */
     ls2d_shape_def shape;
 } ls2d_probe;
 
@@ -796,11 +798,11 @@ typedef struct ls2d_mover {
     uint32_t size;
     /* Steepest slope that counts as ground, measured from the horizontal. */
     ls2d_angle slope_max;
-    /* Height in metres of steps that it climbs without a jump. */
+    /* Height in metres of steps that the character climbs without a jump. */
     ls2d_fx step_height;
     /* Distance in metres by which ground may descend within a tick while the character follows it. */
     ls2d_fx snap_distance;
-    /* Its geometry; other fields of the definition have no effect. */
+    /* Geometry of the character; other fields of the definition have no effect. */
     ls2d_shape_def shape;
 } ls2d_mover;
 
@@ -808,7 +810,7 @@ typedef struct ls2d_mover {
 typedef struct ls2d_mover_plane {
     /* The shape that the character has met. */
     ls2d_shape shape;
-    /* Its body. */
+    /* Body of that shape. */
     ls2d_body body;
     /* Position of the body's origin at that time, in metres. */
     ls2d_vec2 body_position;
@@ -832,9 +834,9 @@ typedef struct ls2d_mover_state {
     uint32_t size;
     /* `LS2D_MOVER_` flags. */
     uint32_t flags;
-    /* Position of its geometry's centre in the world, in metres. */
+    /* Position of the centre of the character's geometry in the world, in metres. */
     ls2d_vec2 position;
-    /* Velocity in m/s: relative to the ground while it stands on ground, otherwise in the world. */
+    /* Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     ls2d_vec2 velocity;
     /* The ground, with `LS2D_MOVER_ON_GROUND`; otherwise zeros. */
     ls2d_mover_plane ground;
@@ -876,7 +878,7 @@ typedef struct ls2d_sensor_event {
 
 /* A joint whose force or torque exceeded its threshold. */
 typedef struct ls2d_joint_event {
-    /* The joint. Its handle is stale if it broke. */
+    /* The joint. The handle is stale if the joint broke. */
     ls2d_joint joint;
     /* Force on body B in N. */
     ls2d_vec2 force;
@@ -963,7 +965,7 @@ typedef struct ls2d_match_config {
     uint64_t match_tag;
     /* Time in microseconds for which play stalls for a missing peer before the others go on. */
     uint64_t patience;
-    /* Identity of the player: a peer that joins with the same key gets its seat back. */
+    /* Identity of the player: a peer that joins with the same key gets its seat back, if that is free. */
     uint64_t key;
     /* Secret random numbers, against packets with forged addresses. */
     uint64_t secret[2];
@@ -991,7 +993,7 @@ typedef struct ls2d_match_event {
     uint32_t seat;
     /* The tick that the event names. */
     uint32_t tick;
-    /* Its meaning depends on the kind. */
+    /* A value whose meaning depends on the kind. */
     uint32_t value;
     /* Reserved: 0. */
     uint32_t reserved;
@@ -1029,7 +1031,8 @@ ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
 /* Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
- * cannot allocate memory. Each thread has one such buffer. A larger size may move it and keeps its contents. */
+ * cannot allocate memory. Each thread has one such buffer. A call with a larger size may move the buffer, but
+ * keeps its contents. */
 size_t ls2d_scratch(size_t size);
 
 /* ---- Worlds ---- */
@@ -1091,10 +1094,10 @@ ls2d_status ls2d_world_clear_scratch(uint32_t world);
 /* Sets the defaults of a body of the given kind, at rest at the origin. */
 ls2d_status ls2d_body_def_init(uint32_t kind, ls2d_body_def *def);
 
-/* Sets the defaults of a shape of the given kind. Its geometry has to be set. */
+/* Sets the defaults of a shape of the given kind. The caller sets the geometry. */
 ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 
-/* Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID`. */
+/* Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID` at first. */
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points: closed if `closed` is not 0, solid from the right only if
@@ -1122,22 +1125,22 @@ ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
 /* Replaces a list of commands by an encoded one, which may come from any source. */
 ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
 
-/* Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`
- * unless it is null. */
+/* Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`,
+ * unless that pointer is null. */
 ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
 
-/* Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list. */
+/* Adds a body with its shapes. The body's handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
 
-/* Adds a body with one definition at each pose, or none if one is refused. A recording stores the definition once.
- * Bodies and flags of the poses are not read. The handles are written, unless the pointer is null or the target is
- * a list. */
+/* Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
+ * definition once. The fields `body` and `flags` of the poses are not read. The handles are written, unless the
+ * pointer is null or the target is a list. */
 ls2d_status ls2d_spawn_each(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, const ls2d_pose *poses, size_t pose_count, ls2d_body *ids, size_t capacity);
 
 /* Removes a body with its shapes and joints. */
 ls2d_status ls2d_despawn(uint32_t target, ls2d_body body);
 
-/* Adds a shape to a body. Its handle is written, unless the pointer is null or the target is a list. */
+/* Adds a shape to a body. The shape's handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_shape(uint32_t target, ls2d_body body, const ls2d_shape_def *shape, ls2d_shape *id);
 
 /* Removes a shape. */
@@ -1149,9 +1152,9 @@ ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_d
 /* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
 
-/* Adds a joint with one definition between each pair of bodies, or none if one is refused. A recording stores the
- * definition once. `ends` has the two bodies of each joint in turn. The handles are written, unless the pointer is
- * null or the target is a list. */
+/* Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. A
+ * recording stores the definition once. `ends` has the two bodies of each joint in turn. The handles are written,
+ * unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
@@ -1342,8 +1345,8 @@ ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d
 
 /* ---- Characters ---- */
 
-/* Sets the defaults of a character with a shape of the given kind, whose geometry has to be set: slopes up to 45
- * degrees, no steps, and ground that falls by up to 0.1 m in a tick. */
+/* Sets the defaults of a character with a shape of the given kind: slopes up to 45 degrees, no steps, and ground
+ * that falls by up to 0.1 m in a tick. The caller sets the geometry. */
 ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 
 /* Sets the state of a character at rest in the air, at a position in metres. */
@@ -1411,7 +1414,8 @@ ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limi
 /* The current tick, and the number of ticks. Null pointers are not written. */
 ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
 
-/* Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays there. */
+/* Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays at that
+ * tick. */
 ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
 
 /* Goes forward by a tick. `LS2D_NONE` at the end. */
@@ -1425,8 +1429,9 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
 
 /* ---- Recorders of games with rules of their own ---- */
 
-/* Starts a recorder for a game with its own rules. `rules` is their name in UTF-8, `setup` the data from which the
- * game makes its first state, and `start` the hash of that state. There is a checkpoint every `interval` ticks. */
+/* Starts a recorder for a game with its own rules. `rules` is the name of the rules in UTF-8, `setup` the data
+ * from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
+ * `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
 /* Records the final inputs of the next tick, all players in order. `absent` has a bit for each absent player,
@@ -1434,14 +1439,14 @@ ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_
  * this tick. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
-/* Passes the hash of the state after the last recorded tick. It has no effect if no checkpoint is due. */
+/* Passes the hash of the state after the last recorded tick. The call has no effect if no checkpoint is due. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 
 /* Takes the finished bytes, to be appended to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
 /* Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
- * 256 results with different names, which can be read without playing it. */
+ * 256 results with different names. They can be read without playing the replay. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
 /* Ends a replay with the hash of the last state, and returns the remaining bytes. */
@@ -1459,8 +1464,8 @@ ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* Name, as bytes, and number of a result that the file states, in ascending order of names. The results are true
- * if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+/* Name (a bytes object) and number of a result that the file states. Results are in ascending order of names. They
+ * are true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
 /* The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
@@ -1471,7 +1476,7 @@ ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, 
  * while seeking, for each `LS2D_REQUEST_CHECKSUM`. */
 ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
 
-/* Adds a result of the game that was played, to be compared with those in the file by the verdict. */
+/* Adds a result of the game that was played. `ls2d_replay_verdict` compares the results with those in the file. */
 ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
 /* The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state. */
@@ -1480,7 +1485,7 @@ ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_ver
 /* ---- Timelines of replays of games with rules of their own ---- */
 
 /* Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
- * returns requests. At the first one the game has to be in its first state. */
+ * returns requests. Before the first request, the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
 /* The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
@@ -1495,7 +1500,7 @@ ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 /* ---- Matches ---- */
 
 /* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
- * start with two taken seats or the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
+ * start once two seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
 /* Opens a match. All peers pass the same `offer`, for example versions, rules and setup, of at most 512 bytes. */
@@ -1504,7 +1509,7 @@ ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offe
 /* Joins a match through the participant at the address `contact`, as a spectator if `own_seats` is 0. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
-/* Sends the request to join to this participant. */
+/* Sends the request to join to the participant at the address `contact`. */
 ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
 
 /* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
@@ -1544,8 +1549,8 @@ ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t
 /* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
-/* Numbers of ticks: `played` in all, `last` with final inputs, `confirmed` played with final inputs. Null pointers
- * are not written. */
+/* Numbers of ticks: `played` is the number of ticks played, `last` of ticks with final inputs, `confirmed` of
+ * ticks played with final inputs. Null pointers are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
 /* Writes the bit mask of this peer's own seats. */
@@ -1561,8 +1566,8 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Requests an end of the match after a number of ticks, sent two seconds before. Until a majority has decided,
- * other peers can get seats. */
+/* Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
+ * has decided, other peers can get seats. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Requests a pause, or, with 0, withdraws the request. */
@@ -1642,12 +1647,12 @@ ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 /* Makes a random number generator, to be kept in the state of the game. */
 ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
 
-/* Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` after
- * it, possibly the same struct. */
+/* Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` the
+ * generator after it. Both may be the same struct. */
 ls2d_status ls2d_rng_below(const ls2d_rng *from, ls2d_rng *rng, uint32_t bound, uint32_t *number);
 
 /* Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
- * the draw, `rng` after it, possibly the same struct. */
+ * the draw, `rng` the generator after it. Both may be the same struct. */
 ls2d_status ls2d_rng_range(const ls2d_rng *from, ls2d_rng *rng, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
 /* Hash of bytes, for the state hash of a game. */

@@ -40,11 +40,12 @@ typedef int32_t ls2d_status;
 /* An object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. */
-#define LS2D_FX(whole) ((ls2d_fx)((int64_t)(whole) * 4294967296))
-#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | has no operands
+ * that are floats, so that a float, which would be truncated, is an error of the compiler. */
+#define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
+#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / ((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
-#define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
+#define LS2D_DEGREES(whole) ((ls2d_angle)LS2D_FX_RATIO(whole, 360))
 /* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */
 #define LS2D_NO_ID UINT64_MAX
 ";

@@ -3,10 +3,11 @@ import { byteArray, fail, flag, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
-import { call, copy, fieldAt, give, library, list, read, scratch, sizeOf, write } from "./library.js";
+import { call, copy, fieldAt, give, library, list, optionsOf, read, scratch, sizeOf, write } from "./library.js";
 import { World } from "./world.js";
 
 const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged"];
+const PLANE = optionsOf("mover_plane");
 const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
 
 function writeMover(at, options) {
@@ -26,7 +27,7 @@ function writeState(at, state) {
     const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND) | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0);
     write("mover_state", at, { position, velocity, flags });
     if (ground !== undefined) {
-        write("mover_plane", fieldAt("mover_state", at, "ground"), ground);
+        write("mover_plane", fieldAt("mover_state", at, "ground"), onlyKnown(ground, PLANE, "`ground`"));
     }
 }
 

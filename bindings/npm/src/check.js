@@ -22,8 +22,11 @@ export function shown(value) {
 }
 
 export function integer(value, what, min, max) {
-    if ((typeof value !== "bigint" && !Number.isSafeInteger(value)) || value < min || value > max) {
+    if ((typeof value !== "bigint" && !Number.isInteger(value)) || value < min || value > max) {
         fail(`${what} is an integer from ${min} to ${max}, and not ${shown(value)}`);
+    }
+    if (typeof value === "number" && !Number.isSafeInteger(value)) {
+        fail(`${what} is the number ${value}, which may be rounded: beyond 2^53 - 1 pass a BigInt`);
     }
     return value;
 }
@@ -31,6 +34,14 @@ export function integer(value, what, min, max) {
 export const count = (value, what) => Number(integer(value, what, 0, U32_MAX));
 
 export const long = (value, what) => BigInt(integer(value, what, 0, 0xffffffffffffffffn));
+
+/** A time in milliseconds, as whole microseconds. */
+export function micros(milliseconds, what) {
+    if (typeof milliseconds !== "number" || !(milliseconds >= 0 && milliseconds < Number.MAX_SAFE_INTEGER / 1000)) {
+        fail(`${what} is a number of milliseconds from 0, and not ${shown(milliseconds)}`);
+    }
+    return BigInt(Math.floor(milliseconds * 1000));
+}
 
 export function object(value, what) {
     if (value === null || typeof value !== "object" || Array.isArray(value)) {
@@ -54,6 +65,10 @@ export function string(value, what) {
 
 export function flag(value, what) {
     return value === undefined || typeof value === "boolean" ? value : fail(`${what} is true or false, and not ${shown(value)}`);
+}
+
+export function callable(value, what) {
+    return typeof value === "function" ? value : fail(`${what} is a function, and not ${shown(value)}`);
 }
 
 export function instance(value, type, what) {

@@ -65,7 +65,8 @@ export const polygon = (corners, options) => shape(C.POLYGON, { points: points(c
 export const hull = (corners, options) => shape(C.HULL, { points: points(corners), count: corners.length }, options);
 export const capsule = (a, b, radius, options) => shape(C.CAPSULE, { points: [a, b], radius }, options);
 export const segment = (a, b, options) => shape(C.SEGMENT, { points: [a, b] }, options);
-export const chain = (corners, { closed = false, oneSided = false, ...options } = {}) => {
+export const chain = (corners, given = {}) => {
+    const { closed = false, oneSided = false, ...options } = object(given, "the options of a chain");
     flag(closed, "closed");
     flag(oneSided, "oneSided");
     return { points: points(corners), closed, oneSided, options: onlyKnown(options, SHAPE_OPTIONS, "a chain") };
@@ -245,9 +246,13 @@ function checkJoint(options, known) {
     }
 }
 
-export function writeJoint(at, options) {
+/** Writes a joint. With `isPlaced`, the length of a pulley follows from the poses of its bodies. */
+export function writeJoint(at, options, isPlaced = false) {
     const [kind, ...known] = lookup(JOINTS, object(options, "a joint").type, "the type of a joint");
     checkJoint(options, known);
+    if (kind === C.PULLEY && (options.wheels === undefined || (options.length === undefined && !isPlaced))) {
+        fail("a pulley needs `wheels` and, without `anchor`, a `length`");
+    }
     call("ls2d_joint_def_init", kind, at);
     const { a, b, anchorA, anchorB, angleA, angleB, limit, motor, spring, springForce, rod, softness } = options;
     const { threshold, linearMotor, linearSpring, angularSpring, teeth, radius, wheels, length, ratio, userData } = options;
@@ -279,7 +284,7 @@ export function writeJoint(at, options) {
 }
 
 export function writeConfig(at, options) {
-    const known = [...optionsOf("config", ["size", "flags"]), "sleeping", "continuous"];
+    const known = [...optionsOf("config", ["flags"]), "sleeping", "continuous"];
     const { sleeping: _, continuous: __, ...plain } = onlyKnown(options, known, "a world");
     write("config", at, plain);
     flags(at, "config", ...bitsOfFlags(options, { sleeping: C.SLEEPING, continuous: C.CONTINUOUS }));

@@ -20,7 +20,7 @@ export class Edits extends Handle {
     /** Returns the handles; undefined for a list of commands. */
     spawnEach(options, poses) {
         const placed = array(poses, "poses").map((pose, index) => {
-            const { position, angle = 0 } = object(pose, `pose ${index}`);
+            const { position, angle = 0 } = onlyKnown(pose, ["position", "angle"], `pose ${index}`);
             // `write` skips undefined fields.
             return position === undefined ? fail(`pose ${index} has no position`) : { position, angle };
         });
@@ -71,7 +71,7 @@ export class Edits extends Handle {
         const { anchor, axis, ...definition } = object(options, "a joint");
         const place = anchor === undefined ? undefined : [...raws(anchor, "anchor"), ...raws(axis ?? [0, 0], "axis")];
         const at = scratch(48 + sizeOf("joint_def"));
-        writeJoint(at + 48, definition);
+        writeJoint(at + 48, definition, anchor !== undefined);
         if (options.a === undefined || options.b === undefined) {
             fail("a joint connects two bodies, `a` and `b`");
         }

@@ -223,7 +223,8 @@ const FIELDS = Object.fromEntries(
 );
 
 /** Fields of a struct that are options. */
-export const optionsOf = (name, without) => Object.keys(STRUCTS[name].fields).filter((field) => !without.includes(field)).map(camel);
+export const optionsOf = (name, without = []) =>
+    Object.keys(STRUCTS[name].fields).filter((field) => !["size", "reserved", ...without].includes(field)).map(camel);
 
 export function write(name, at, values) {
     reading(() => writeFields(name, at, values));

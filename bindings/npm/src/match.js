@@ -1,8 +1,9 @@
 // Matches, and a driver that plays a game with them.
-import { byteArray, count, fail, instance, integer, long, onlyKnown } from "./check.js";
+import { byteArray, callable, count, fail, instance, integer, long, micros as microsOf, object, onlyKnown } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
 import { Handle, call, copy, give, optionsOf, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
+import { nativeOffer } from "./native.js";
 import { nextRequest } from "./requests.js";
 
 const STATUS = ["joining", "watching", "waiting", "playing", "paused", "dropped", "kicked", "leaving", "left", "finished", "closed",
@@ -13,14 +14,9 @@ const REASONS = ["offer", "full", "taken", "notReady"];
 const ADDRESS_MAX = 32;
 const PACKET_MAX = 2048;
 
-const MATCH_OPTIONS = ["contact", "offer", "tickRate", ...optionsOf("match_config", ["size", "tick_micros"])];
+const MATCH_OPTIONS = ["contact", "offer", "tickRate", ...optionsOf("match_config", ["tick_micros"])];
 
-function micros(milliseconds, what = "the time") {
-    if (typeof milliseconds !== "number" || !(milliseconds >= 0 && milliseconds < Number.MAX_SAFE_INTEGER / 1000)) {
-        fail(`${what} is a number of milliseconds from 0, and not ${milliseconds}`);
-    }
-    return BigInt(Math.floor(milliseconds * 1000));
-}
+const micros = (now) => microsOf(now, "the time");
 
 function random(count) {
     return crypto.getRandomValues(new BigUint64Array(count));
@@ -34,13 +30,15 @@ function identity({ peer, key, secret }) {
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
+/** The options that have to be equal for all peers. */
+const offerOf = ({ seats, inputBytes, tickRate, patience }) => nativeOffer({ rules: "", seats, inputBytes, tickRate, patience });
+
 export class Match extends Handle {
     #inputs;
 
     constructor(options) {
-        const { contact, offer = new Uint8Array(), seats, peer, key, secret, ...config } =
-            onlyKnown(options, MATCH_OPTIONS, "a match");
-        count(seats, "`seats`");
+        const { contact, offer = offerOf(options), peer, key, secret, ...config } = onlyKnown(options, MATCH_OPTIONS, "a match");
+        const [seats, inputBytes] = [count(config.seats, "`seats`"), count(config.inputBytes ?? 1, "`inputBytes`")];
         byteArray(offer, "`offer`");
         if (contact !== undefined) {
             byteArray(contact, "`contact`");
@@ -55,7 +53,7 @@ export class Match extends Handle {
         write("match_config", at + 8, {
             ...plain,
             tickMicros: tickRate === undefined ? undefined : Math.floor(1_000_000 / Number(integer(tickRate, "`tickRate`", 1, 1000))),
-            patience: patience === undefined ? undefined : micros(patience, "`patience`"),
+            patience: patience === undefined ? undefined : microsOf(patience, "`patience`"),
             ...identity({ peer, key, secret }),
         });
         const to = at + before;
@@ -65,8 +63,8 @@ export class Match extends Handle {
             call("ls2d_match_join", at + 8, to, offer.length, to + offer.length, contact.length, at);
         }
         super(u32(at));
-        this.#inputs = seats * (config.inputBytes ?? 1);
-        this.inputBytes = config.inputBytes ?? 1;
+        this.#inputs = seats * inputBytes;
+        this.inputBytes = inputBytes;
     }
 
     ask(contact) {
@@ -218,12 +216,13 @@ export class MatchDriver {
     #send;
     #saves = new Map();
     #tick = 0;
+    #isFinished = false;
     #failure;
 
     constructor(match, game, send) {
         this.#match = instance(match, Match, "the match");
-        this.#game = game;
-        this.#send = send;
+        this.#game = object(game, "the game");
+        this.#send = callable(send, "`send`");
         this.#keep(0);
     }
 
@@ -236,7 +235,7 @@ export class MatchDriver {
     }
 
     get ended() {
-        return ["finished", "closed"].includes(this.#match.status) && this.#tick === this.#match.ticks().final;
+        return this.#isFinished && this.#tick === this.#match.ticks().final;
     }
 
     receive(now, from, packet) {
@@ -244,6 +243,7 @@ export class MatchDriver {
     }
 
     update(now, readInputs) {
+        callable(readInputs, "`readInputs`");
         if (this.#failure !== undefined) {
             throw this.#failure.error;
         }
@@ -262,6 +262,7 @@ export class MatchDriver {
             if (event.kind === "state") {
                 this.#resume(event.tick, event.state);
             }
+            this.#isFinished ||= event.status === "finished";
             events.push(event);
         }
         this.#fulfil();

@@ -1,5 +1,5 @@
 // A member of a room of a relay.
-import { byteArray, fail, string } from "./check.js";
+import { byteArray, fail, onlyKnown, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
@@ -29,7 +29,9 @@ export class Relay {
     onPacket = () => {};
     onMembers = () => {};
 
-    static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
+    static async connect(url, code, options = {}) {
+        const { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } =
+            onlyKnown(options, ["secret", "WebSocket"], "a connection");
         if (typeof WebSocket !== "function") {
             fail("there is no WebSocket here; pass one as option");
         }

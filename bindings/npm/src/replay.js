@@ -1,5 +1,5 @@
 // Replays of worlds, and of games with their own rules.
-import { byteArray, count, instance, integer, long, onlyKnown, string } from "./check.js";
+import { byteArray, count, fail, instance, integer, long, object, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
 import { Commands } from "./edits.js";
 import { Handle, call, copy, disposable, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
@@ -11,6 +11,7 @@ import { Adopted, World } from "./world.js";
 const VERDICTS = ["match", "claim_mismatch", "diverged", "incomplete", "malformed", "limit_exceeded", "unverifiable"];
 const RECORDER_OPTIONS = ["rules", "rulesVersion", "players", "tickRate", "inputBytes", "setup", "start", "interval"];
 const ENCODER = new TextEncoder();
+const STRAYED = "the game has failed before, or the replay was read without this driver";
 
 function verdictAt(at) {
     const field = (name) => fieldAt("verdict", at, name);
@@ -36,7 +37,7 @@ function limitsAt(at, limits) {
     if (limits === undefined) {
         return 0;
     }
-    onlyKnown(limits, optionsOf("limits", ["size"]), "`limits`");
+    onlyKnown(limits, optionsOf("limits"), "`limits`");
     call("ls2d_limits_init", at);
     write("limits", at, limits);
     return at;
@@ -218,7 +219,7 @@ export class ReplayDriver {
 
     constructor(replay, game) {
         this.#replay = instance(replay, Replay, "the replay");
-        this.#game = game;
+        this.#game = object(game, "the game");
     }
 
     get tick() {
@@ -233,6 +234,7 @@ export class ReplayDriver {
         for (let request = this.#replay.nextRequest(); request !== undefined; request = this.#replay.nextRequest()) {
             this.#answer(request);
         }
+        this.#expect(Number(tick));
     }
 
     step() {
@@ -259,13 +261,14 @@ export class ReplayDriver {
     }
 
     #answer({ kind, tick, inputs, absent }) {
+        if (kind === "load") {
+            this.#load(tick);
+            return;
+        }
+        this.#expect(tick);
         switch (kind) {
             case "save":
                 this.#saves.set(tick, this.#game.save());
-                break;
-            case "load":
-                this.#game.load(this.#saves.get(tick));
-                this.#tick = tick;
                 break;
             case "advance":
                 this.#game.step(inputs, absent);
@@ -273,6 +276,21 @@ export class ReplayDriver {
                 break;
             default:
                 this.#replay.check(this.#game.hash());
+        }
+    }
+
+    #load(tick) {
+        if (!this.#saves.has(tick)) {
+            fail(`the game has not saved tick ${tick}: ${STRAYED}`);
+        }
+        this.#game.load(this.#saves.get(tick));
+        this.#tick = tick;
+    }
+
+    // The replay moves on with each request, also if the game fails, or if the request went to another driver.
+    #expect(tick) {
+        if (this.#tick !== tick) {
+            fail(`the replay is at tick ${tick}, and the game at tick ${this.#tick}: ${STRAYED}`);
         }
     }
 }

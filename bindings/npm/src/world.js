@@ -306,7 +306,8 @@ export class World extends Edits {
         writeShape(fieldAt("probe", at, "shape"), shape);
     }
 
-    castShape(shape, position, translation, { angle, ...filter } = {}) {
+    castShape(shape, position, translation, options = {}) {
+        const { angle, ...filter } = object(options, "the options of a query");
         const [hit, probe] = [sizeOf("cast_hit"), sizeOf("probe")];
         const along = raws(translation, "translation");
         const at = scratch(hit + probe + FILTER());
@@ -321,7 +322,8 @@ export class World extends Edits {
         return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
     }
 
-    overlapShape(shape, position, { angle, ...filter } = {}) {
+    overlapShape(shape, position, options = {}) {
+        const { angle, ...filter } = object(options, "the options of a query");
         const probe = sizeOf("probe");
         return this.#overlaps(probe + FILTER(), (shapes, capacity, count, before) => {
             this.#probe(before, shape, position, angle);

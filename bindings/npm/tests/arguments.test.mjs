@@ -84,3 +84,83 @@ test("settings of a body are read and set as a whole", () => {
         assert.throws(() => w.setBody(body, ignored), { code: "VALUE", message: /no option/ });
     }
 });
+
+test("a hole in a list is an error", () => {
+    const w = world();
+    const [a, b] = [0, 2].map((x) => w.spawn({ position: [x, 5], shapes: [L.circle("0.5")] }));
+    const before = w.hash();
+    for (const call of [
+        () => w.spawnEach({}, [{ position: [0, 0] }, , { position: [1, 0] }]), () => w.spawnEach({}, new Array(2)),
+        () => w.addJointEach({ type: "weld" }, [[a, b], , ]), () => w.addJointEach({ type: "weld" }, [[a, ,]]),
+        () => w.spawn({ shapes: [L.chain([[0, 0], , [2, 0], [3, 0]])] }), () => w.spawn({ shapes: [L.circle(1), , ] }),
+        () => w.spawn({ shapes: [L.polygon([[0, 0], , [1, 0], [0, 1]])] }), () => w.castRay([0, 0], [1, 0], { except: [a, , b] }),
+    ]) {
+        assert.throws(call, { code: "VALUE" }, String(call));
+    }
+    assert.equal(w.hash(), before);
+});
+
+class Polar {
+    constructor(radius, angle) {
+        Object.assign(this, { radius, angle });
+    }
+    get x() {
+        return L.rotate([this.radius, 0], this.angle).x;
+    }
+    get y() {
+        return L.rotate([this.radius, 0], this.angle).y;
+    }
+}
+
+test("getters of a vector may calculate, and other calls in them are errors", () => {
+    const [w, plain, polar] = [world(), ({ x, y }) => [x, y], new Polar(3, L.degrees(30))];
+    const [body, same] = [polar, plain(polar)].map((position) => w.spawn({ position, velocity: position, shapes: [L.circle(1)] }));
+    assert.deepEqual([w.body(body).position, w.body(body).velocity], [w.body(same).position, w.body(same).velocity]);
+    w.despawn(same);
+    const [low, high] = [new Polar(6, L.degrees(-135)), new Polar(6, L.degrees(45))];
+    assert.deepEqual([w.overlapBox(low, high), w.overlapBox(plain(low), plain(high))], [w.shapesOf(body), w.shapesOf(body)]);
+    const other = { y: 0, get x() { return w.body(body).position.x; } };
+    assert.throws(() => w.spawn({ position: other }), { code: "VALUE", message: /getter/ });
+    assert.throws(() => w.overlapBox(other, [9, 9]), { code: "VALUE", message: /getter/ });
+});
+
+test("a key that nothing reads is an error", () => {
+    const w = world();
+    assert.throws(() => w.spawnEach({}, [{ position: [0, 0] }, { position: [1, 0], rotation: 0 }]), /pose 1 has no option rotation/);
+    assert.equal(w.counts().bodies, 0);
+});
+
+test("an integer that a number cannot represent is to be a BigInt", () => {
+    const w = world();
+    assert.throws(() => w.spawn({ userData: 2 ** 53 }), { code: "VALUE", message: /pass a BigInt/ });
+    assert.throws(() => w.spawn({ userData: 2 ** 64 }), { code: "VALUE", message: /from 0 to 18446744073709551615/ });
+    assert.equal(w.body(w.spawn({ userData: 2n ** 53n })).userData, 2n ** 53n);
+});
+
+test("a pulley has wheels and a length", () => {
+    const w = world();
+    const [a, b] = [0, 4].map((x) => w.spawn({ position: [x, 5], shapes: [L.circle("0.5")] }));
+    const pulley = { type: "pulley", a, b, wheels: [[0, 10], [4, 10]] };
+    assert.throws(() => w.addJoint(pulley), { code: "VALUE", message: /`length`/ });
+    assert.throws(() => w.addJoint({ ...pulley, wheels: undefined, length: 10 }), { code: "VALUE", message: /`wheels`/ });
+    assert.throws(() => w.addJointEach({ ...pulley, a: undefined, b: undefined }, [[a, b]]), { code: "VALUE" });
+    const joint = w.addJoint({ ...pulley, anchor: [0, 5] });
+    w.setJoint(joint, w.joint(joint));
+    assert.ok(w.joint(joint).length.gt(9));
+});
+
+test("null in place of an argument is an error with a code", () => {
+    const w = world();
+    const state = { position: [0, 0], velocity: [0, 0], ground: null };
+    for (const call of [
+        () => w.castShape(null, [0, 0], [1, 0]), () => w.castShape(L.circle(1), null, [1, 0]), () => w.castShape(L.circle(1), [0, 0], null),
+        () => w.castShape(L.circle(1), [0, 0], [1, 0], null), () => w.overlapShape(L.circle(1), [0, 0], null), () => L.chain([], null),
+        () => w.castRay([0, 0], [1, 0], null), () => w.castRayAll([0, 0], [1, 0], null), () => w.overlapPoint([0, 0], null),
+        () => w.overlapBox([0, 0], [1, 1], null), () => w.closest([0, 0], 1, null), () => w.castRay([0, 0], [1, 0], { except: null }),
+        () => L.moveCharacter(w, { shape: L.circle(1) }, state), () => L.moveCharacter(w, null, { position: [0, 0] }),
+        () => L.encodeMoverState(state), () => L.encodeMoverState({ position: [0, 0], ground: { point: null } }),
+        () => L.encodeMoverState(null), () => L.decodeMoverState(null), () => w.setMass(0, null), () => w.setName(0, null),
+    ]) {
+        assert.throws(call, { name: "Lockstep2dError" }, String(call));
+    }
+});

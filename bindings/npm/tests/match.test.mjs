@@ -129,13 +129,45 @@ test("options of a match are checked", () => {
     ]) {
         assert.throws(() => new L.Match(wrong), { code: "VALUE" }, JSON.stringify(wrong, (_, value) => (typeof value === "bigint" ? `${value}` : value)));
     }
+    assert.throws(() => new L.Match({ seats: 2, ownSeats: 3 }), { code: "VALUE", message: /`ownSeats`/ });
+    assert.throws(() => new L.Match({ seats: 2, inputBytes: 70_000 }), { code: "VALUE", message: /`inputBytes`/ });
+    assert.throws(() => new L.Match({ seats: 2, guess: 70_000 }), { code: "VALUE", message: /`guess`/ });
     const match = new L.Match({ seats: 2 });
+    for (const [game, send] of [[undefined, () => {}], [{}, undefined]]) {
+        assert.throws(() => new L.MatchDriver(match, game, send), { code: "VALUE" });
+    }
     for (const wrong of [-1, 0.5, NaN, "x"]) {
         assert.throws(() => match.endAt(wrong), { code: "VALUE" });
         assert.throws(() => match.setGuess(wrong), { code: "VALUE" });
     }
     for (const wrong of [-1, NaN, "x", undefined]) {
         assert.throws(() => match.update(wrong), { code: "VALUE" });
+    }
+});
+
+test("a peer with other parameters is refused", () => {
+    for (const differs of [{ seats: 2 }, { inputBytes: 2 }, { tickRate: 30 }, { patience: 3000 }]) {
+        const net = new Net();
+        const host = net.add({ startWith: 2 });
+        const other = net.add({ contact: address(0), ...differs });
+        net.run(1000);
+        assert.ok(other.events.some(({ reason }) => reason === "offer"), JSON.stringify(differs));
+        assert.deepEqual([host.match.status, other.match.status], ["waiting", "connecting"]);
+    }
+});
+
+test("the offer of a native match is checked", () => {
+    const good = { rules: "push", seats: 2 };
+    for (const wrong of [
+        undefined, null, { seats: 2 }, { rules: "push" }, { ...good, seats: "two" }, { ...good, seats: 2.9 }, { ...good, seats: 65 },
+        { ...good, inputBytes: 65537 }, { ...good, rulesversion: 7 }, { ...good, patience: NaN }, { ...good, setup: "x" },
+        { ...good, tickRate: 0 }, { ...good, rulesVersion: -1 },
+    ]) {
+        assert.throws(() => L.nativeOffer(wrong), { code: "VALUE" }, JSON.stringify(wrong));
+    }
+    assert.equal(L.nativeOffer(good).length, 54);
+    for (const call of [() => L.encodeNativeState(), () => L.decodeNativeState(), () => L.decodeNativeState(new Uint8Array(3))]) {
+        assert.throws(call, { name: "Lockstep2dError" }, String(call));
     }
 });
 
@@ -163,4 +195,23 @@ test("a match ends for the game when it has played all ticks", () => {
     for (let now = 0; now < 5000 && !driver.ended; now += 10) driver.update(now, () => Uint8Array.of(0));
     assert.ok(driver.ended);
     assert.equal(driver.tick, 30);
+});
+
+test("only a finished match has ended, also once it is closed", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 2 });
+    net.add({ contact: address(0) });
+    net.run(500);
+    const spectators = Array.from({ length: 4 }, () => net.add({ ownSeats: 0, contact: address(0) }));
+    net.run(2000);
+    spectators.forEach(({ match }) => {
+        match.leave();
+        net.run(16);
+    });
+    host.match.endAt(300);
+    net.run(16_000);
+    // Some have played all the ticks that they have heard of.
+    assert.ok(spectators.some(({ driver, match }) => driver.tick === match.ticks().final));
+    assert.deepEqual([host.match.status, host.driver.tick, host.driver.ended], ["closed", 300, true]);
+    assert.deepEqual(spectators.map(({ driver, match }) => [match.status, driver.ended]), spectators.map(() => ["closed", false]));
 });

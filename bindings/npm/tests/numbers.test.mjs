@@ -73,3 +73,13 @@ test("a float is an error that says why", () => {
     assert.throws(() => L.sqrt(-1), { code: "NUMBER" });
     world.dispose();
 });
+
+test("numbers and angles have no operators", () => {
+    const [speed, angle] = [L.fx(2), L.degrees(45)];
+    for (const call of [
+        () => speed < L.fx(3), () => speed * 2, () => `${speed}` + speed, () => angle < L.degrees(90), () => angle + angle, () => angle * 2,
+        () => -angle, () => angle == 0,
+    ]) {
+        assert.throws(call, { code: "FLOAT", message: /has no operators: use add, sub/ }, String(call));
+    }
+});

@@ -159,6 +159,54 @@ test("a game with rules in JavaScript goes to any tick of its replay", () => {
     assert.deepEqual(wrong.sums, states[100].sums);
 });
 
+/** Goes to a tick. The game is then at the driver's tick, even if the driver fails. Returns whether it has arrived. */
+function arrives(driver, game, tick) {
+    let error;
+    try {
+        driver.seek(tick);
+    } catch (caught) {
+        error = caught;
+        assert.match(error.message, /no sprite|the game has failed before/);
+    }
+    const sound = new Sums();
+    for (let played = 0; played < driver.tick; played++) {
+        sound.step(...inputsAt(played));
+    }
+    assert.deepEqual(game.sums, sound.sums);
+    assert.ok(error !== undefined || driver.tick === tick);
+    return error === undefined;
+}
+
+test("a replay that another driver has moved is an error", () => {
+    const bytes = record(200);
+    for (const tick of [45, 40, 0, 100]) {
+        const [replay, game] = [new L.Replay(bytes), new Sums()];
+        const first = new L.ReplayDriver(replay, new Sums());
+        first.seek(40);
+        first.dispose();
+        const second = new L.ReplayDriver(replay, game);
+        assert.ok(!arrives(second, game, tick), `${tick}`);
+        [0, 70, 100].forEach((other) => arrives(second, game, other));
+        assert.throws(() => new L.ReplayDriver(replay), { code: "VALUE" });
+    }
+});
+
+test("a driver is at the tick of its game after the game has failed", () => {
+    for (const [name, before, failing] of [["step", 19, 25], ["save", 59, 65], ["hash", 59, 65], ["load", 125, 10]]) {
+        const game = new Sums();
+        const driver = new L.ReplayDriver(new L.Replay(record(200)), game);
+        driver.seek(before);
+        game[name] = () => {
+            delete game[name];
+            throw new Error("no sprite");
+        };
+        assert.ok(!arrives(driver, game, failing), name);
+        [before + 1, before + 5, before + 70].forEach((tick) => arrives(driver, game, tick));
+        // A saved state from before the failure leads on.
+        assert.ok(arrives(driver, game, 10), name);
+    }
+});
+
 test("files are opened and refused, although reading them moves the memory", () => {
     const setup = new L.Commands();
     for (let x = 0; x < 2000; x++) {

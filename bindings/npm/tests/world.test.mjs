@@ -293,3 +293,27 @@ test("a character walks, climbs a step, rides a lift and stops at a wall", () =>
     assert.throws(() => L.decodeMoverState(new Uint8Array(3)), /bytes/);
     world.dispose();
 });
+
+test("a joint that cannot be fitted is an error, after which the module goes on", () => {
+    const { world, box } = fallingBox();
+    const other = world.spawn({ position: [1, 3], shapes: [L.circle("0.5")] });
+    const before = world.hash();
+    for (const wrong of [{ type: "gear", teeth: [0, 1] }, { type: "gear", teeth: [1, 0] }, { type: "rack", radius: 0 }]) {
+        assert.throws(() => world.addJoint({ a: box, b: other, anchor: [1, 3], ...wrong }), { name: "Lockstep2dError" });
+    }
+    assert.equal(world.hash(), before);
+    world.step();
+});
+
+test("the encoded state of a character has its whole state", () => {
+    const { world, box } = fallingBox();
+    const [shape] = world.shapesOf(box);
+    const frame = { bodyPosition: [0, 3], bodyAngle: L.degrees(5), velocity: [1, 0] };
+    const ground = { shape, body: box, ...frame, normal: [0, 1], point: [1, 2], separation: "0.01" };
+    for (const state of [{ isWedged: true }, { isWedged: false }, { ground }, { ground, isWedged: true }]) {
+        const bytes = L.encodeMoverState({ position: [1, 2], velocity: [3, 4], ...state });
+        const decoded = L.decodeMoverState(bytes);
+        assert.deepEqual([decoded.isWedged, decoded.isOnGround], [state.isWedged ?? false, state.ground !== undefined]);
+        assert.deepEqual(L.encodeMoverState(decoded), bytes);
+    }
+});

@@ -279,7 +279,7 @@ impl RawVerdict {
 }
 
 fn narrow<T: TryFrom<u32>>(name: &str, given: u32) -> Outcome<T> {
-    T::try_from(given).map_err(|_| value(name, given))
+    T::try_from(given).map_err(|_| value(&format!("`{name}`"), given))
 }
 
 impl RawMatchConfig {
@@ -326,7 +326,7 @@ impl RawMatchConfig {
         config.timing = Timing { patience: self.patience, ..config.timing };
         config.validate()?;
         if self.own_seats > self.seats {
-            return Err(value("own_seats", self.own_seats));
+            return Err(value("`own_seats`", self.own_seats));
         }
         Ok(config)
     }
