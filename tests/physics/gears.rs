@@ -55,9 +55,6 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-<<<<<<< HEAD
-/// A motor turns pairs of wheels against a brake for a minute.
-=======
 /// The fit would divide by the number of teeth.
 #[test]
 fn a_gear_without_teeth_cannot_be_fitted() {
@@ -70,8 +67,7 @@ fn a_gear_without_teeth_cannot_be_fitted() {
     }
 }
 
-/// Pairs of wheels against a brake for a minute.
->>>>>>> fix-npm
+/// A motor turns pairs of wheels against a brake for a minute.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
