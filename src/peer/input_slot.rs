@@ -6,6 +6,8 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use super::error::PeerError;
 use crate::codec;
+use crate::lockstep::InputError;
+use crate::replay::RecordError;
 
 pub(super) const LENGTH_BYTES: u16 = 2;
 
@@ -37,8 +39,16 @@ impl InputSlot {
         }
     }
 
-    pub(super) fn put<I: Serialize>(self, input: &I, slots: &mut Vec<u8>) -> Result<(), PeerError> {
+    /// Appends an input. An input that the peers would decode to another one is refused, as by a recording.
+    pub(super) fn put<I: Serialize + DeserializeOwned>(
+        self,
+        input: &I,
+        slots: &mut Vec<u8>,
+    ) -> Result<(), PeerError> {
         let encoded = codec::encode(input);
+        if !codec::decode::<I>(&encoded).is_ok_and(|decoded| codec::encode(&decoded) == encoded) {
+            return Err(PeerError::Record(RecordError::Inputs(InputError::NotCanonical)));
+        }
         let end = slots.len() + usize::from(self.bytes());
         let possible = match self {
             InputSlot::Fixed(bytes) => {
@@ -91,5 +101,27 @@ mod tests {
         );
         assert_eq!(list.take::<Vec<u8>>(&[255; 14]), Vec::<u8>::new(), "not an input");
         assert_eq!(InputSlot::of::<()>(None).unwrap().bytes(), 1);
+    }
+
+    #[test]
+    fn an_own_input_that_its_type_refuses_is_an_error() {
+        #[derive(Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+        #[serde(try_from = "u16", into = "u16")]
+        struct Degrees(u16);
+        impl From<Degrees> for u16 {
+            fn from(degrees: Degrees) -> u16 {
+                degrees.0
+            }
+        }
+        impl TryFrom<u16> for Degrees {
+            type Error = &'static str;
+            fn try_from(degrees: u16) -> Result<Self, &'static str> {
+                (degrees < 360).then_some(Degrees(degrees)).ok_or("more than a turn")
+            }
+        }
+        let (slot, mut slots) = (InputSlot::of::<Degrees>(None).unwrap(), Vec::new());
+        let refused = Err(PeerError::Record(RecordError::Inputs(InputError::NotCanonical)));
+        assert_eq!(slot.put(&Degrees(360), &mut slots), refused);
+        assert_eq!((slot.put(&Degrees(359), &mut slots), slots.len()), (Ok(()), 2));
     }
 }

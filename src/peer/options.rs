@@ -30,7 +30,8 @@ pub struct PeerOptions {
     pub patience: Duration,
     /// Number of seats taken before the first tick: 0 to the number of players of the game. Default: 2.
     pub start_with: u8,
-    /// Number of own seats. 0 makes a host a dedicated server; a joining player requests at least 1. Default: 1.
+    /// Number of own seats, at most the number of players. 0 makes a host a dedicated server; a joining player requests
+    /// at least 1. Default: 1.
     pub seats: u8,
     /// First own seat, to request certain seats. `first_seat` + `seats` is at most the number of players. Default:
     /// `None`, any free seats.
@@ -95,6 +96,10 @@ impl PeerOptions {
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
         config.check_interval = config.save_interval * (10 / config.save_interval).max(1);
         config.validate().map_err(|error| named(error, game, slot))?;
+        if self.seats > seats {
+            let (value, max) = (self.seats.into(), seats.into());
+            return Err(ConfigError { field: "seats", value, min: 0, max, step: 1 }.into());
+        }
         Ok(config)
     }
 }

@@ -19,7 +19,9 @@ impl Endpoint {
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
         if is_join_packet(body) {
             match JoinPacket::read(body) {
-                Ok((sender, packet)) if sender != self.me => self.take(now, from, sender, packet),
+                Ok((sender, packet)) if sender != self.me || self.concerns_identity(&packet) => {
+                    self.take(now, from, sender, packet);
+                }
                 _ => {}
             }
             return;
@@ -102,6 +104,16 @@ impl Endpoint {
                     }
                 }
             }
+        }
+    }
+
+    /// Whether a packet from a process with this peer's identity is processed, so that one of the two learns that the
+    /// identity is taken. The answers to a hello name its secret nonce, so they cannot be forged.
+    fn concerns_identity(&self, packet: &JoinPacket) -> bool {
+        match packet {
+            JoinPacket::Hello { .. } => self.session().is_some(),
+            JoinPacket::Challenge { .. } | JoinPacket::Refused { .. } => self.session().is_none(),
+            _ => false,
         }
     }
 

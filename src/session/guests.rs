@@ -77,7 +77,7 @@ impl Guests {
             }
             return None;
         }
-        if session.view().voter(id).is_some() {
+        if id == session.id() || session.view().voter(id).is_some() {
             return Some(RefusalReason::Taken);
         }
         if self.list.len() >= GUESTS_MAX {

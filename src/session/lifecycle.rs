@@ -154,7 +154,7 @@ impl Session {
             (true, _) => Status::Playing,
             (false, _) if self.lifecycle.kicked => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
-            (false, _) if self.view.begun && !self.is_connected() => Status::Paused,
+            (false, _) if !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,
         }

@@ -4,6 +4,9 @@
 //! steers towards the median of these estimates, a peer without a vote towards [`FOLLOW`] ticks behind the final ones.
 //! Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may differ.
 //! A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
+//!
+//! A voter is behind the other players, not behind the inputs: those are issued ahead of play by the input delay, and
+//! an own tick played at once would issue further ones.
 
 use alloc::vec::Vec;
 
@@ -24,9 +27,10 @@ pub(super) struct Pace {
     delay_at: u64,
     /// Whether this peer waits because another one is far behind.
     held: bool,
-    /// Number of complete ticks (final ticks, for a peer without a vote) that this peer has not played.
+    /// Number of ticks that this peer may play at once. For a voter: complete ticks that the median of the other
+    /// players is estimated to have played. For a peer without a vote: final ticks.
     behind: Tick,
-    /// Whether this peer has just got a vote and plays complete ticks before they are due.
+    /// Whether this peer has just got a vote and plays ticks before they are due until it is level with the others.
     hurries: bool,
 }
 
@@ -94,8 +98,12 @@ impl Session {
         let most = i64::try_from(tick / 8).unwrap_or(0);
         let adjust = adjust.clamp(-most / 2, most);
         self.pace.length = tick.saturating_add_signed(adjust);
-        let lead = if own { self.progress.complete } else { self.progress.fin };
-        self.pace.behind = lead.saturating_sub(self.play.played);
+        self.pace.behind = if own {
+            let complete = self.progress.complete.saturating_sub(self.play.played);
+            complete.min(Tick::try_from(-median / PART).unwrap_or(0))
+        } else {
+            self.progress.fin.saturating_sub(self.play.played)
+        };
         self.pace.hurries &= self.pace.behind > 0;
         self.adapt_delay();
     }

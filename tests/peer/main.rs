@@ -261,6 +261,62 @@ fn a_dedicated_server_plays_no_seat() {
     assert!(matches!(verify::<Pushers>(&replays[0], &Limits::default()), Verdict::Match { .. }));
 }
 
+/// After the first player has left, nobody plays until the second one gets its seat.
+#[test]
+fn a_late_player_who_is_alone_plays_at_the_rate_of_the_game() {
+    let options = PeerOptions { start_with: 1, ..PeerOptions::rollback() };
+    let mut table = Table::new(20, 0);
+    table.host(PeerOptions { seats: 0, ..options });
+    table.join(options, 0);
+    table.play(1000);
+    table.peer(1).leave();
+    table.play(3000);
+    table.join(options, 0);
+    table.play(2000);
+    let before = table.peer(2).tick();
+    table.play(2000);
+    let played = table.peer(2).tick() - before;
+    assert!((115..=125).contains(&played), "{played} ticks in 2 s");
+}
+
+/// Without a tick, only silence shows that the contact has left.
+#[test]
+fn a_spectator_whose_contact_leaves_the_lobby_finds_another_one() {
+    let options = PeerOptions { start_with: 3, ..PeerOptions::rollback() };
+    let mut table = Table::new(20, 0);
+    table.host(options);
+    table.join(options, 0);
+    table.play(1000);
+    table.watch(options, 0);
+    table.play(2000);
+    table.peer(0).leave();
+    table.play(3500);
+    table.join(options, 1);
+    table.join(options, 1);
+    table.play(3000);
+    assert!(table.peer(1).tick() > 60);
+    assert!(table.peer(2).confirmed() + 30 > table.peer(1).tick());
+}
+
+#[test]
+fn a_second_process_with_the_same_identity_is_refused() {
+    let mut table = Table::new(10, 0);
+    table.host(PeerOptions { start_with: 1, ..PeerOptions::lockstep() });
+    table.play(100);
+    let (_, port) = table.next();
+    let contact = Network::address(0);
+    let options = PeerOptions::lockstep();
+    let mut twin =
+        Peer::<Pushers, _>::join(&Setup::default(), options, identity(0), port, contact).expect("valid");
+    let mut error = None;
+    for _ in 0..500 {
+        table.play(1);
+        error = error.or(twin.update(table.network.time()).err());
+    }
+    assert_eq!(error, Some(PeerError::Refused { why: "the identity is taken" }));
+    assert!(table.peer(0).tick() > 20);
+}
+
 #[test]
 fn more_inputs_than_seats_are_an_error() {
     let mut table = Table::new(1, 0);
@@ -287,6 +343,8 @@ fn an_option_out_of_its_range_is_named_as_the_caller_knows_it() {
         (PeerOptions { delay: (0, 61), ..options }, "`delay.1` is 0 to 60, not 61"),
         (PeerOptions { guess: 33, ..options }, "`guess` is 0 to 32, not 33"),
         (PeerOptions { start_with: 5, ..options }, "`start_with` is 0 to 4, not 5"),
+        (PeerOptions { seats: 5, ..options }, "`seats` is 0 to 4, not 5"),
+        (PeerOptions { seats: 255, ..options }, "`seats` is 0 to 4, not 255"),
         (PeerOptions { input_bytes: Some(511), ..options }, "`input_bytes` is 0 to 510, not 511"),
     ] {
         assert_eq!(refused(options), format!("the session cannot start: {expected}"));

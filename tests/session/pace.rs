@@ -135,3 +135,28 @@ fn a_slow_peer_slows_others_only_in_lockstep_and_is_named() {
     assert!(sim.peers[0].session.played() > played + 60);
     assert_eq!(sim.failure, None);
 }
+
+#[test]
+fn a_delay_above_the_latency_does_not_speed_up_the_match() {
+    for (count, guess) in [(1, 0), (2, 0), (2, 8), (3, 0)] {
+        let mut sim = players(count, link(20 * MS), |config| {
+            (config.guess, config.save_interval) = (guess, 1);
+            (config.delay_min, config.delay_max) = (30, 30);
+        });
+        let pace = pace(&mut sim, 5);
+        assert!((5950..6100).contains(&pace), "{count} players: {pace} hundredths of a tick per second");
+    }
+}
+
+#[test]
+fn a_match_keeps_its_pace_when_the_latency_falls() {
+    let mut sim = players(2, link(200 * MS), |_| ());
+    assert!(pace(&mut sim, 5) >= 5950);
+    assert!(sim.peers.iter().all(|peer| peer.session.delay() >= 12));
+    let before = sim.peers[0].session.played();
+    sim.links = vec![vec![link(5 * MS); 2]; 2];
+    sim.run(15 * S);
+    assert_eq!(sim.failure, None);
+    let played = sim.peers[0].session.played() - before;
+    assert!((297..320).contains(&played), "{played} ticks in 5 s");
+}
