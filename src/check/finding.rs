@@ -92,7 +92,7 @@ impl Guess {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The variant in which the fault was found.
+    /// The variant in which the fault was found. [`Variant::Recorded`] if the reference run exceeds a limit.
     pub variant: Variant,
     /// The fault.
     pub fault: Fault,
@@ -161,7 +161,10 @@ const SHOWN: usize = 8;
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Finding { variant, fault, tick, .. } = self;
-        write!(f, "{variant}")?;
+        match fault {
+            Fault::Verdict(Verdict::LimitExceeded { .. }) => write!(f, "played within the limits")?,
+            _ => write!(f, "{variant}")?,
+        }
         if let Some((depth, guess)) = self.rollback {
             write!(f, " by {depth} {}", if depth == 1 { "tick" } else { "ticks" })?;
             f.write_str(match guess {
@@ -212,6 +215,7 @@ impl fmt::Display for Fault {
                     "two states with the same hash but different saves reach different hashes with the same inputs"
                 )
             }
+            Fault::Verdict(verdict @ Verdict::LimitExceeded { .. }) => verdict.fmt(f),
             Fault::Verdict(verdict) => write!(f, "the recording does not verify: {verdict}"),
             Fault::Unrecordable(error) => write!(f, "the recording cannot be finished: {error}"),
         }

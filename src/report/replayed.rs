@@ -20,8 +20,9 @@ pub(super) enum Effort {
     /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
     /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged, and either both states are available or that side's file has no further save.
-    /// The rerun and the search together take at most two and a half times the work of all ticks.
+    /// Plays until a side has diverged, no difference is suspected any more, and either both states are available or
+    /// that side's file has no further save. The rerun and the search together take at most two and a half times the
+    /// work of all ticks.
     Bounded,
 }
 
@@ -72,6 +73,7 @@ fn play<G: Game>(
         raw,
         previous: None,
         wrong: None,
+        suspected: None,
         states: None,
         presumed: None,
         obstacle: None,
@@ -126,7 +128,7 @@ fn compare_saves_alone<G: Game>(
 struct States<S> {
     tick: u64,
     states: [S; 2],
-    /// The side without a hash for this tick, presumed to equal the rerun. This is right if the side equals the rerun
+    /// The side without a hash for this tick, presumed not to have diverged. This is right if the side equals the rerun
     /// at this tick or later, because a diverged side does not converge again.
     presumed: Option<Side>,
 }
@@ -143,6 +145,10 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
+    /// The first tick at which one side differs from the rerun, while the other side, which is named, has no hash and
+    /// has not diverged before. Cleared by the next hash of the other side: the two differ at that tick if it equals
+    /// the rerun, since a diverged side does not converge again. Otherwise both may have diverged in the same way.
+    suspected: Option<(u64, Side)>,
     /// The states at the first different tick with both states.
     states: Option<States<G::Save>>,
     /// As `states`, if the state of one side is presumed.
@@ -153,9 +159,9 @@ struct Beside<'a, 'k, G: Game> {
 
 impl<G: Game> Beside<'_, '_, G> {
     fn run(mut self, until: u64) -> Result<(), CompareError> {
-        let (direct, equal) = (self.found.first_different, self.found.last_equal.take());
+        let equal = self.found.last_equal.take();
         loop {
-            self.look(direct);
+            self.look();
             if self.raw.tick() >= until || self.is_enough() {
                 break;
             }
@@ -164,7 +170,7 @@ impl<G: Game> Beside<'_, '_, G> {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
                 // Without a difference so far, an incomplete rerun would look like equal trajectories.
-                Err(verdict) if self.found.first_different.is_none() && self.wrong.is_none() => {
+                Err(verdict) if self.found.first_different.is_none() && self.diverged().is_none() => {
                     return Err(CompareError::Replay { side: self.side, verdict });
                 }
                 Err(verdict) => {
@@ -175,6 +181,8 @@ impl<G: Game> Beside<'_, '_, G> {
             }
         }
         self.found.simulated = Some(self.raw.tick());
+        let unsettled = self.suspected.map(|(tick, _)| tick).filter(|tick| equal < Some(*tick));
+        self.found.first_different = self.found.first_different.or(unsettled);
         // The files may have more ticks than the replay has inputs.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
@@ -183,13 +191,18 @@ impl<G: Game> Beside<'_, '_, G> {
 
     fn is_enough(&self) -> bool {
         let tick = self.raw.tick();
-        let has_diverged = |side: &usize| self.found.trajectories[*side].diverges.is_some();
-        let has_told = |side: usize| self.known[side].saves.range(tick..).next().is_none();
-        let diverged = [0, 1].into_iter().find(has_diverged);
-        self.effort == Effort::Bounded && diverged.is_some_and(|side| self.states.is_some() || has_told(side))
+        let has_told = |side: Side| self.known[side.index()].saves.range(tick..).next().is_none();
+        self.effort == Effort::Bounded
+            && self.suspected.is_none()
+            && self.diverged().is_some_and(|side| self.states.is_some() || has_told(side))
     }
 
-    fn look(&mut self, direct: Option<u64>) {
+    fn diverged(&self) -> Option<Side> {
+        let has_diverged = |side: &Side| self.found.trajectories[side.index()].diverges.is_some();
+        Side::BOTH.into_iter().find(has_diverged)
+    }
+
+    fn look(&mut self) {
         let (tick, hash) = (self.raw.tick(), self.raw.game().state_hash());
         let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
         for (known, (trajectory, had)) in self.known.iter().zip(self.found.trajectories.iter_mut().zip(had)) {
@@ -209,30 +222,44 @@ impl<G: Game> Beside<'_, '_, G> {
                 _ => {}
             }
         }
-        let differ = had.contains(&Some(false)) && had != [Some(false); 2]
-            || self.known[0].same(&self.known[1], tick) == Some(false);
-        if self.found.first_different.is_none_or(|first| tick < first) && differ {
-            self.found.first_different = Some(tick);
+        self.settle(had);
+        let is_after = self.found.first_different.is_some_and(|first| first <= tick);
+        if (is_after || self.suspected.is_some()) && self.states.is_none() {
+            self.take_states(had);
         }
-        let before_it = self.found.first_different.or(direct).is_none_or(|first| tick < first);
-        let same = had == [Some(true); 2] || self.known[0].same(&self.known[1], tick) == Some(true);
-        if before_it && same {
+    }
+
+    /// Updates the last equal and the first different tick.
+    fn settle(&mut self, had: [Option<bool>; 2]) {
+        let tick = self.raw.tick();
+        let direct = self.known[0].same(&self.known[1], tick);
+        let differ = direct == Some(false) || had.contains(&Some(false)) && had.contains(&Some(true));
+        let settled = self.suspected.take_if(|(_, side)| had[side.index()].is_some());
+        let confirmed = settled.filter(|(_, side)| had[side.index()] == Some(true)).map(|(tick, _)| tick);
+        let first = [self.found.first_different, confirmed, differ.then_some(tick)];
+        self.found.first_different = first.into_iter().flatten().min();
+        if self.found.first_different.is_some_and(|first| first <= tick) {
+            return;
+        }
+        if had == [Some(true); 2] || direct == Some(true) {
             self.found.last_equal = Some(tick);
         }
-        if !before_it && self.states.is_none() {
-            self.take_states(had);
+        if self.suspected.is_none() && had.contains(&Some(false)) {
+            let has_diverged = |side: Side| self.found.trajectories[side.index()].diverges.is_some();
+            let is_silent = |side: &Side| had[side.index()].is_none() && !has_diverged(*side);
+            self.suspected = Side::BOTH.into_iter().find(is_silent).map(|side| (tick, side));
         }
     }
 
     fn take_states(&mut self, had: [Option<bool>; 2]) {
         let tick = self.raw.tick();
         let mut states = Vec::new();
-        let mut presumed = None;
+        let mut presumed = self.suspected.map(|(_, side)| side);
         for (side, had) in Side::BOTH.into_iter().zip(had) {
             let own = self.known[side.index()].saves.get(&tick);
             states.push(match (own, had) {
                 (_, Some(true)) => self.raw.game().save(),
-                (None, None) if presumed.is_none() => {
+                (None, None) if presumed.is_none_or(|presumed| presumed == side) => {
                     presumed = Some(side);
                     self.raw.game().save()
                 }

@@ -1,7 +1,7 @@
 //! Every planted fault is found by the variant for its kind.
 
 use lockstep2d::check::{
-    CheckError, CheckOptions, Depths, Failure, Fault, Variant, check, check_replay, random_inputs,
+    CheckError, CheckOptions, Checker, Depths, Failure, Fault, Variant, check, check_replay, random_inputs,
 };
 use lockstep2d::math::Rng;
 use lockstep2d::replay::Verdict;
@@ -139,6 +139,15 @@ fn what_cannot_be_recorded_or_verified_is_found() {
     ));
     let failure = failure(Mistake::WorkIsHuge);
     assert!(matches!(found(&failure), (Variant::Recorded, Fault::Verdict(Verdict::LimitExceeded { .. }))));
+}
+
+/// The reference run exceeds it, also if nothing is recorded.
+#[test]
+fn a_limit_that_is_exceeded_is_not_called_a_fault_of_the_recording() {
+    let options = CheckOptions::default().only(&[]);
+    let mut checker = Checker::<Toy>::new(&Mistake::WorkIsHuge, &options).unwrap();
+    let finding = checker.step(&[0; 2]).unwrap_err().to_string();
+    assert!(finding.starts_with("played within the limits: after tick 0 limit exceeded: "), "{finding}");
 }
 
 #[test]

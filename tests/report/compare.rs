@@ -5,7 +5,7 @@ use lockstep2d::inspect::{Difference, Value};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
 use lockstep2d::replay::Limits;
-use lockstep2d::report::{Blame, Comparison, DesyncReport, Evidence, Side, compare};
+use lockstep2d::report::{Blame, Comparison, DesyncReport, Evidence, Side, bisect, compare};
 use lockstep2d::world::BodyField;
 
 use crate::sweep;
@@ -211,6 +211,29 @@ fn replays_tell_who_diverged_between_which_checkpoints() {
     let report = peers[0].report(0, 75, Vec::new());
     let found = compared(&evidence(&report), &replays[1]);
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));
+}
+
+/// As for a game that uses floats or a random order, or for the wrong build of the tool: both sides diverge from the
+/// rerun, in the same way at first.
+#[test]
+fn reports_of_rules_that_this_program_cannot_reproduce_give_the_tick_and_the_field() {
+    let flip = |tick, body| Flip { tick, when: When::After, body, field: BodyField::VelocityY, bit: 12 };
+    let (other_rules, fault) = (flip(20, 5), flip(150, 9));
+    // With checkpoints every 100 ticks, A has no hash for most ticks before its report begins.
+    for (interval, until) in [(25, 160), (100, 160), (100, 164)] {
+        let mut a = Peer::with_checkpoints(interval, 3, [other_rules]);
+        let mut b = Peer::new(3, [other_rules, fault]);
+        (0..until).for_each(|_| a.advance());
+        (0..162).for_each(|_| b.advance());
+        let flipped = b.flipped.clone().unwrap();
+        let (a, b) = (evidence(&a.report(0, 150, Vec::new())), evidence(&b.report(1, 150, Vec::new())));
+        for found in [compared(&a, &b), bisect::<Yard>(&a, Some(&b), &Limits::default()).unwrap()] {
+            let ticks = (found.last_equal, found.first_different, found.tick);
+            assert_eq!(ticks, (Some(149), Some(150), Some(150)), "{found:?}");
+            assert_eq!((found.blame, found.subjects.len()), (Blame::Both, 1), "{found:?}");
+            assert_eq!(found.subjects[0].path, flipped, "{found:?}");
+        }
+    }
 }
 
 #[test]

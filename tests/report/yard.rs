@@ -139,34 +139,41 @@ pub(crate) struct Peer {
     pub(crate) history: History<Yard>,
     recorder: Recorder<Yard>,
     replay: Vec<u8>,
-    flip: Option<Flip>,
+    flips: Vec<Flip>,
     pub(crate) tick: u64,
     /// Path of the body whose bit flipped.
     pub(crate) flipped: Option<String>,
 }
 
 impl Peer {
-    pub(crate) fn new(seed: u64, flip: Option<Flip>) -> Self {
-        let (mut recorder, game) = Recorder::<Yard>::start(&seed, 25).expect("a valid setup");
+    pub(crate) fn new(seed: u64, flips: impl IntoIterator<Item = Flip>) -> Self {
+        Peer::with_checkpoints(25, seed, flips)
+    }
+
+    /// `interval` is the number of ticks between two checkpoints of the replay.
+    pub(crate) fn with_checkpoints(interval: u32, seed: u64, flips: impl IntoIterator<Item = Flip>) -> Self {
+        let flips = flips.into_iter().collect();
+        let (mut recorder, game) = Recorder::<Yard>::start(&seed, interval).expect("a valid setup");
         let mut history = History::new(&game);
         history.push(0, game.save(), game.state_hash());
         let replay = recorder.take_bytes();
-        Peer { game, history, recorder, replay, flip, tick: 0, flipped: None }
+        Peer { game, history, recorder, replay, flips, tick: 0, flipped: None }
     }
 
     /// Simulates a tick without recording it.
     fn play(&mut self, inputs: &[u8]) {
         let next = self.tick + 1;
-        let flip = |when| move |flip: &Flip| flip.tick == next && flip.when == when;
-        if let Some(flip) = self.flip.filter(flip(When::Before)) {
-            self.flipped = flip.apply(&mut self.game);
-        }
+        self.flip(next, When::Before);
         self.game.step(inputs);
-        if let Some(flip) = self.flip.filter(flip(When::After)) {
-            self.flipped = flip.apply(&mut self.game);
-        }
+        self.flip(next, When::After);
         self.tick = next;
         self.history.push(next, self.game.save(), self.game.state_hash());
+    }
+
+    fn flip(&mut self, tick: u64, when: When) {
+        for flip in self.flips.iter().filter(|flip| flip.tick == tick && flip.when == when) {
+            self.flipped = flip.apply(&mut self.game);
+        }
     }
 
     fn inputs(&self) -> Vec<u8> {

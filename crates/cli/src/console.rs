@@ -7,6 +7,7 @@ use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 
 use crate::error::CommandError;
+use crate::files::is_misleading;
 
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
 pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
@@ -49,6 +50,31 @@ impl Console<'_> {
     }
 }
 
+/// JSON on one line, with [misleading](is_misleading) characters escaped.
 pub(crate) fn json_text(value: &impl Serialize) -> String {
-    serde_json::to_string(value).expect("strings and numbers have a JSON form")
+    let text = serde_json::to_string(value).expect("strings and numbers have a JSON form");
+    // They occur only in strings.
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        if is_misleading(character) {
+            let mut units = [0; 2];
+            escaped.extend(character.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")));
+        } else {
+            escaped.push(character);
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_that_misleads_a_terminal_is_escaped_in_json() {
+        let name = "a\u{202e}b\u{7f}\u{9b}2J\u{e0041}\u{1b}\n ü";
+        let json = json_text(&[name]);
+        assert_eq!(json, r#"["a\u202eb\u007f\u009b2J\udb40\udc41\u001b\n ü"]"#);
+        assert_eq!(serde_json::from_str::<[String; 1]>(&json).unwrap(), [name]);
+    }
 }

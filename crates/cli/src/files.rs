@@ -45,13 +45,13 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Untrusted text on one line. Control characters and those of [`is_invisible`] are escaped.
+/// Untrusted text on one line, with [misleading](is_misleading) characters escaped.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for character in self.0.chars() {
-            if character.is_control() || is_invisible(character) {
+            if is_misleading(character) {
                 write!(f, "{}", character.escape_default())?;
             } else {
                 write!(f, "{character}")?;
@@ -61,13 +61,14 @@ impl fmt::Display for OneLine<'_> {
     }
 }
 
-/// Whether a character is a line or paragraph separator, a soft hyphen, a zero-width or bidirectional control, an
-/// interlinear annotation mark, or a tag.
-fn is_invisible(character: char) -> bool {
+/// Whether a character is a control character, a line or paragraph separator, a soft hyphen, a zero-width or
+/// bidirectional control, an interlinear annotation mark, or a tag.
+pub(crate) fn is_misleading(character: char) -> bool {
     matches!(
         character,
-        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
+            | '\u{e0000}'..='\u{e007f}'
     )
 }
 

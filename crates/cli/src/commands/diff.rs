@@ -49,7 +49,7 @@ impl Printed {
         console: &mut Console<'_>,
     ) -> CommandResult {
         if self.json {
-            console.line(json::document(sides, found))?;
+            console.json(&json::document(sides, found))?;
         } else {
             console.line(text::Text { found, sides, subjects: self.subjects })?;
         }

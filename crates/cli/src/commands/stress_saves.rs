@@ -77,7 +77,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     }
     let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
     if arguments.json {
-        context.console.line(outcome.document())?;
+        context.console.json(&outcome.document())?;
     } else {
         context.console.line(&outcome)?;
     }
@@ -154,7 +154,7 @@ impl fmt::Display for Lines<'_> {
 }
 
 impl Outcome<'_> {
-    fn document(&self) -> String {
+    fn document(&self) -> Json {
         let Arguments { file, from, output, .. } = self.arguments;
         let file = file.display().to_string();
         match self.result {
@@ -179,7 +179,6 @@ impl Outcome<'_> {
                 })
             }
         }
-        .to_string()
     }
 }
 

@@ -86,6 +86,19 @@ fn bodies_are_counted_at_the_start_and_after_every_tick() {
 }
 
 #[test]
+fn a_name_cannot_reverse_the_text_of_a_terminal() {
+    let folder = Folder::new("override");
+    let file = folder.write("a\u{202e}yalper.replay", &replay(3));
+    for arguments in [["verify", "--json"], ["inspect", "--json"], ["verify", "--jobs=1"]] {
+        let outcome = run(&[arguments[0], arguments[1], &file]);
+        let texts = outcome.out + &outcome.err;
+        assert!(texts.contains("u202e") || texts.contains("u{202e}"), "{arguments:?}: {texts}");
+        assert!(!texts.contains('\u{202e}'), "{arguments:?}: {texts}");
+    }
+    assert_eq!(line(&run(&["verify", "--json", &file]).out)["file"], file);
+}
+
+#[test]
 fn a_panic_is_said_and_hides_no_other() {
     let folder = Folder::new("panic");
     folder.write("a.replay", &replay(3));

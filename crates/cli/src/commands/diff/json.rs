@@ -6,7 +6,7 @@ use lockstep2d::inspect::{Difference, Value};
 use lockstep2d::report::{Blame, Comparison, Group, Side, Subject, Trajectory};
 use serde_json::{Value as Json, json};
 
-pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
+pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> Json {
     let subjects: Vec<Json> = found.subjects.iter().map(subject).collect();
     let began: Vec<Json> = found.began.iter().map(subject).collect();
     let input = found
@@ -18,7 +18,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
     );
     let group = |group: &Group| json!({"hash": group.hash.to_string(), "seats": group.seats});
     let groups: Vec<Json> = found.groups.iter().map(group).collect();
-    let document = json!({
+    json!({
         "equal": found.is_equal(),
         "last_equal": found.last_equal,
         "first_different": found.first_different,
@@ -36,8 +36,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
         "began": began,
         "subjects": subjects,
         "notes": found.notes,
-    });
-    document.to_string()
+    })
 }
 
 fn subject(subject: &Subject) -> Json {

@@ -82,7 +82,8 @@ impl Text<'_> {
                 write!(
                     f,
                     "\nplayed again up to tick {until}: {BAD}both diverged{BAD:#}, A at tick {a}, B at tick {b}; check \
-                     that both were made with these rules and this engine"
+                     that both were made with these rules and this engine, and that the rules use no floats and no random \
+                     order, such as that of a HashMap"
                 )?;
             }
         }

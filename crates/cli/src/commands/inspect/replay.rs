@@ -25,7 +25,7 @@ pub(super) fn print<G: Game>(
     if arguments.json {
         let mut document = summary.document();
         document["file"] = arguments.file.display().to_string().into();
-        context.console.line(document)?;
+        context.console.json(&document)?;
     } else {
         let file = format!("{}", Shown(&arguments.file));
         summary.print(&format!("{file}: replay"), arguments, &mut context.console)?;

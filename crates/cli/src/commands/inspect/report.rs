@@ -26,7 +26,7 @@ pub(super) fn print<G: Game>(
     let console = &mut context.console;
     let exit = replay.as_ref().map_or(Exit::Success, Summary::exit);
     if arguments.json {
-        console.line(document::<G>(report, arguments, replay.as_ref()))?;
+        console.json(&document::<G>(report, arguments, replay.as_ref()))?;
         return Ok(exit);
     }
     let (name, version) = report.rules();

@@ -28,7 +28,7 @@ impl State {
             let file = arguments.file.display().to_string();
             let fields: Vec<Json> = fields.into_iter().map(field_json).collect();
             let document = json!({"file": file, "tick": tick, "hash": hash, "fields": fields});
-            console.line(document)?;
+            console.json(&document)?;
             return Ok(Exit::Success);
         }
         let tick = tick.map_or(" that was saved".into(), |tick| format!(" after tick {tick}"));

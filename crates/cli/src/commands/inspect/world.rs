@@ -29,7 +29,7 @@ pub(super) fn print(
             "hash": hash.to_string(),
             "counts": counts,
         });
-        console.line(document)?;
+        console.json(&document)?;
         return Ok(Exit::Success);
     }
     console.line(format_args!("{}: snapshot of a world, {bytes} bytes", Shown(&arguments.file)))?;

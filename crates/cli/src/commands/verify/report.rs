@@ -127,7 +127,7 @@ impl Report {
 
 /// The line of a file that cannot be read, which has no verdict.
 pub(super) fn unread(file: &Path, error: &io::Error) -> String {
-    json!({ "file": file.display().to_string(), "error": error.to_string() }).to_string()
+    json_text(&json!({ "file": file.display().to_string(), "error": error.to_string() }))
 }
 
 /// The line of a file that has exceeded its time limit, which has no verdict.
