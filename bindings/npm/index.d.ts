@@ -558,8 +558,8 @@ declare class Edits extends Handle {
     explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
 }
 
-/** A list of edits, for replays and networks. In a new world, the bodies that it spawns have the handles 0, 1, 2 and so
- * on, and so have shapes and joints: `0 as BodyId` is the first body. */
+/** A list of edits, for replays and networks. If it removes nothing, the bodies that it spawns in a new world have the
+ * handles 0, 1, 2 and so on, and so have shapes and joints: `0 as BodyId` is the first body. */
 export class Commands extends Edits {
     #private;
     constructor();
@@ -1196,7 +1196,7 @@ export class Match extends Handle {
      * final inputs. While the status is `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`,
      * `link`, `advance`, `reportHash`, `leave`, and all functions below `leave`. */
     ticks(): { played: number; final: number; confirmed: number };
-    /** The final inputs of all seats for a tick; undefined if they are not kept. */
+    /** The final inputs of all seats for a tick; undefined if the tick is not final yet or they are no longer kept. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats of this peer, in ascending order. */
     readonly seats: number[];

@@ -36,8 +36,9 @@ const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 /// Effect of a sensor on the bodies inside it, such as wind, water or a field of gravity.
 ///
 /// The area acts on the solid shapes of dynamic bodies with mass that the sensor detects, in proportion to the part of
-/// each shape that is inside. Rounded outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of
-/// the radius for circles, and 1.7 % for other rounded outlines. The area's body feels no reaction.
+/// each shape that is inside. Segments and links count only if the body has no shape with an area. Rounded outlines are
+/// measured as polygons of 32 sides, with an error of up to 0.4 % of the radius for circles, and 1.7 % for other
+/// rounded outlines. The area's body feels no reaction.
 ///
 /// ```
 /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};

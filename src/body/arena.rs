@@ -67,7 +67,7 @@ macro_rules! define_handle {
 }
 
 define_handle! {
-    /// Handle of a body. Valid until that body is despawned.
+    /// Handle of a body. Valid until that body is despawned, or a state from before its spawn is restored.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};

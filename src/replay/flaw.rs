@@ -70,7 +70,7 @@ pub enum Flaw {
     EmptyBlock,
     /// A run has no ticks.
     EmptyRun,
-    /// Two consecutive runs have the same inputs.
+    /// Two consecutive runs of a block have the same inputs.
     SplitRun,
     /// A block has more ticks than the checkpoint interval.
     BlockTicks {

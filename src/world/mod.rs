@@ -283,7 +283,7 @@ impl World {
     }
 
     /// Sets the instruction set that the solver uses. Does not change any hash. Returns false and changes nothing if
-    /// this machine does not have it.
+    /// it is not in [`Backend::available`].
     #[doc(alias = "SIMD")]
     pub fn set_backend(&mut self, backend: Backend) -> bool {
         let machine = Machine::new(backend);

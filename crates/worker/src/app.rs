@@ -178,7 +178,8 @@ pub(crate) struct WorkArguments {
     /// Seconds without a sign of progress after which a job goes to another worker
     #[arg(long, value_name = "N", default_value = "30", value_parser = seconds)]
     pub(crate) ack_seconds: Duration,
-    /// Seconds after a signal in which the file at work may be completed; then it goes back to the queue
+    /// Seconds after a signal in which the file at work may be completed; then, or after a second signal, it goes back
+    /// to the queue
     #[arg(long, value_name = "N", default_value = "20", value_parser = seconds)]
     pub(crate) grace_seconds: Duration,
     /// Address to serve /metrics on, such as 127.0.0.1:9100

@@ -16,8 +16,8 @@ pub(super) struct Output<'a> {
 }
 
 impl Output<'_> {
-    /// Calls `write` with the output file or, if there is none, with the standard output. The file appears only when
-    /// all of it is written, so a failed run leaves the old file unchanged.
+    /// Calls `write` with the output file or, if there is none, with the standard output. A regular file appears only
+    /// when all of it is written, so a failed run leaves the old file unchanged.
     pub(super) fn write(
         arguments: &Arguments,
         console: &mut Console<'_>,
