@@ -1,6 +1,6 @@
 use super::id::{PeerId, Tick};
 
-/// What this peer does in the match.
+/// Role of this peer in the match.
 ///
 /// ```
 /// use lockstep2d::session::Status;

@@ -26,7 +26,7 @@ pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 /// Largest number of repetitions of a pair of short commands in a tick. They fit into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
-/// How often the size of a case is doubled until a tick takes long enough.
+/// Maximum number of doublings of the size of a case until a tick takes long enough.
 const DOUBLED_MAX: u32 = 7;
 
 #[derive(Clone, Copy, Debug)]
