@@ -33,7 +33,7 @@ struct Arguments {
     /// Maximum size of a datagram in bytes
     #[arg(long, default_value_t = Limits::default().datagram_bytes)]
     datagram_bytes: usize,
-    /// Maximum bytes that wait for one member; the oldest datagrams are dropped
+    /// Maximum memory in bytes of the datagrams that wait for one member; the oldest are dropped
     #[arg(long, default_value_t = Limits::default().queue_bytes)]
     queue_bytes: usize,
     /// Maximum bytes per second from one member

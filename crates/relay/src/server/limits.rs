@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-/// Limits of a relay. Waiting frames take at most `connections` times `queue_bytes` bytes.
+/// Limits of a relay. Waiting datagrams take at most `connections` times `queue_bytes` bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest number of connections.
@@ -13,7 +13,8 @@ pub struct Limits {
     pub members: usize,
     /// Largest datagram in bytes. A larger datagram closes the connection.
     pub datagram_bytes: usize,
-    /// Maximum number of bytes that wait for a member. If there are more, the oldest datagrams are dropped.
+    /// Maximum memory in bytes of the datagrams that wait for a member, with 80 bytes of overhead for each. If there is
+    /// more, the oldest datagrams are dropped.
     pub queue_bytes: usize,
     /// Maximum number of bytes per second from a member, with bursts of one second. Datagrams above this rate are
     /// dropped. A rate eight times as high closes the connection.

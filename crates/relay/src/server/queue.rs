@@ -5,7 +5,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::Notify;
 
-/// Frames that wait for a member. Their total size is limited.
+/// Memory of a frame besides its contents: its entry in a deque that may be half empty, and the overhead of its
+/// allocation. Without it, a flood of empty datagrams would take many times the limit.
+const FRAME_OVERHEAD: usize = 80;
+
+/// Frames that wait for a member. Their total memory is limited.
 pub(super) struct Queue {
     state: Mutex<State>,
     changed: Notify,
@@ -29,6 +33,10 @@ pub(super) enum Next {
     Replaced,
 }
 
+fn memory(frame: &[u8]) -> usize {
+    frame.len().saturating_add(FRAME_OVERHEAD)
+}
+
 impl Queue {
     pub(super) fn new(bytes_max: usize) -> Self {
         Queue { state: Mutex::default(), changed: Notify::new(), bytes_max }
@@ -41,11 +49,11 @@ impl Queue {
     /// Appends a frame. Drops the oldest frames while the limit is exceeded.
     pub(super) fn push(&self, frame: Vec<u8>) {
         let mut state = self.state();
-        state.bytes += frame.len();
+        state.bytes += memory(&frame);
         state.frames.push_back(frame);
         while state.bytes > self.bytes_max {
             let Some(oldest) = state.frames.pop_front() else { break };
-            state.bytes -= oldest.len();
+            state.bytes -= memory(&oldest);
         }
         drop(state);
         self.changed.notify_one();
@@ -70,7 +78,7 @@ impl Queue {
             return Some(Next::Members);
         }
         let frame = state.frames.pop_front()?;
-        state.bytes -= frame.len();
+        state.bytes -= memory(&frame);
         Some(Next::Frame(frame))
     }
 
@@ -91,15 +99,22 @@ mod tests {
 
     #[test]
     fn the_oldest_frames_are_dropped() {
-        let queue = Queue::new(100);
+        let queue = Queue::new(10 * (10 + FRAME_OVERHEAD));
         (0..50).for_each(|number| queue.push(vec![number; 10]));
         queue.room_changed();
         queue.room_changed();
         assert_eq!(queue.pop(), Some(Next::Members), "changes of the room come first, once");
         let kept: Vec<_> = std::iter::from_fn(|| queue.pop()).collect();
         assert_eq!(kept, (40..50).map(|number| Next::Frame(vec![number; 10])).collect::<Vec<_>>());
-        queue.push(vec![0; 101]);
+        queue.push(vec![0; 11 + 9 * 10 + 10 * FRAME_OVERHEAD]);
         assert_eq!(queue.pop(), None);
         assert_eq!(queue.state().bytes, 0);
+    }
+
+    #[test]
+    fn empty_frames_are_limited() {
+        let queue = Queue::new(1000);
+        (0..50).for_each(|_| queue.push(Vec::new()));
+        assert_eq!(queue.state().frames.len(), 1000 / FRAME_OVERHEAD);
     }
 }
