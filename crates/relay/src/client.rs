@@ -5,7 +5,9 @@ use core::time::Duration;
 use std::io;
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Weak};
 use std::thread;
+use std::time::Instant;
 
 use lockstep2d::peer::Transport;
 use lockstep2d::session::Address;
@@ -13,6 +15,7 @@ use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Message, WebSocket, client::client_with_config};
 
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
+use crate::silence::{Due, Silence};
 
 /// Longest attempt to connect to an address. Also the longest read or write during the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
@@ -65,15 +68,22 @@ struct Target {
 }
 
 enum State {
-    Open(Box<Socket>),
-    /// A background thread is connecting.
-    Connecting(Receiver<(Socket, Members)>),
+    Open {
+        socket: Box<Socket>,
+        silence: Silence,
+    },
+    /// A background thread is connecting. It ends when `wanted` is dropped.
+    Connecting {
+        receiver: Receiver<(Socket, Members)>,
+        #[expect(dead_code, reason = "the thread looks whether it still exists")]
+        wanted: Arc<()>,
+    },
     /// A newer connection of this member has replaced this one.
     Closed,
 }
 
 /// A member of a room of a relay. A lost connection is opened again in the background. Datagrams are lost in the
-/// meantime.
+/// meantime. A connection that is silent for 15 s, although [`Transport::receive`] is called, counts as lost.
 ///
 /// ```no_run
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -116,10 +126,9 @@ impl Relay {
         let wrong = || RelayError::Url { url: url.to_owned() };
         let host = host.filter(|host| !host.is_empty() && !host.contains('/')).ok_or_else(wrong)?.to_owned();
         let target = Target { url: format!("ws://{host}/{code}"), host, secret };
-        let (socket, members) = open(&target).map_err(|why| RelayError::Refused { why })?;
-        let nowhere = Address::nowhere();
-        let mut relay =
-            Relay { target, state: State::Open(Box::new(socket)), own: nowhere, others: Vec::new() };
+        let (socket, members) = open(&target, || true).map_err(|why| RelayError::Refused { why })?;
+        let own = Address::nowhere();
+        let mut relay = Relay { target, state: State::open(socket), own, others: Vec::new() };
         relay.set_members(&members);
         Ok(relay)
     }
@@ -139,7 +148,7 @@ impl Relay {
     /// Whether there is a connection at the moment.
     #[must_use]
     pub const fn is_open(&self) -> bool {
-        matches!(self.state, State::Open(_))
+        matches!(self.state, State::Open { .. })
     }
 
     /// Whether a newer connection with this secret has replaced this one. This connection is then not opened again.
@@ -160,16 +169,22 @@ impl Relay {
         }
     }
 
-    /// Connects again in another thread, until an attempt succeeds.
+    /// Connects again in another thread, until an attempt succeeds or this member is dropped. A thread that outlived its
+    /// member could replace the connection of a new member with the same secret.
     fn reconnect(&mut self) {
         let (sender, receiver) = channel();
         let target = self.target.clone();
+        let wanted = Arc::new(());
+        let still_wanted = Arc::downgrade(&wanted);
         thread::spawn(move || {
+            let is_wanted = || Weak::strong_count(&still_wanted) > 0;
             let mut pause = PAUSE_MIN;
             loop {
                 thread::sleep(pause);
-                let opened = open(&target);
-                if let Ok(opened) = opened {
+                if !is_wanted() {
+                    return;
+                }
+                if let Ok(opened) = open(&target, is_wanted) {
                     // This fails if the member was dropped, because the receiver is then gone.
                     let _ = sender.send(opened);
                     return;
@@ -177,15 +192,15 @@ impl Relay {
                 pause = (pause * 2).min(PAUSE_MAX);
             }
         });
-        self.state = State::Connecting(receiver);
+        self.state = State::Connecting { receiver, wanted };
     }
 
-    /// The socket, if there is a connection. Takes the new connection if the thread has opened one.
-    fn socket(&mut self) -> Option<&mut Socket> {
-        if let State::Connecting(receiver) = &self.state {
+    /// The connection, if there is one. Takes the new connection if the thread has opened one.
+    fn connection(&mut self) -> Option<(&mut Socket, &mut Silence)> {
+        if let State::Connecting { receiver, .. } = &self.state {
             match receiver.try_recv() {
                 Ok((socket, members)) => {
-                    self.state = State::Open(Box::new(socket));
+                    self.state = State::open(socket);
                     self.set_members(&members);
                 }
                 Err(TryRecvError::Empty) => {}
@@ -193,14 +208,33 @@ impl Relay {
             }
         }
         match &mut self.state {
-            State::Open(socket) => Some(socket),
-            State::Connecting(_) | State::Closed => None,
+            State::Open { socket, silence } => Some((socket, silence)),
+            State::Connecting { .. } | State::Closed => None,
+        }
+    }
+
+    /// Sends a ping, or connects again, if nothing has arrived for some time.
+    fn check_silence(&mut self) {
+        let Some((socket, silence)) = self.connection() else { return };
+        match silence.due(Instant::now()) {
+            Due::Nothing => {}
+            Due::Ping => {
+                // An error of the connection is found by the next read.
+                let _ = socket.send(Message::Ping(tungstenite::Bytes::new()));
+            }
+            Due::Reconnect => self.reconnect(),
         }
     }
 }
 
-/// Opens a connection. Returns the socket and the members of the room.
-fn open(target: &Target) -> Result<(Socket, Members), String> {
+impl State {
+    fn open(socket: Socket) -> Self {
+        State::Open { socket: Box::new(socket), silence: Silence::new(Instant::now()) }
+    }
+}
+
+/// Opens a connection, unless it is no longer wanted. Returns the socket and the members of the room.
+fn open(target: &Target, is_wanted: impl Fn() -> bool) -> Result<(Socket, Members), String> {
     let stream = connect(&target.host).map_err(|error| error.to_string())?;
     let config = WebSocketConfig::default()
         .max_message_size(Some(FRAME_MAX))
@@ -209,6 +243,10 @@ fn open(target: &Target) -> Result<(Socket, Members), String> {
         .max_write_buffer_size(WRITE_MAX);
     let opened = client_with_config(&target.url, stream, Some(config));
     let (mut socket, _) = opened.map_err(|error| error.to_string())?;
+    // With the secret, this connection replaces an older one.
+    if !is_wanted() {
+        return Err("no longer wanted".to_owned());
+    }
     socket.send(Message::binary(target.secret.to_vec())).map_err(|error| error.to_string())?;
     loop {
         match socket.read().map_err(|error| error.to_string())? {
@@ -256,7 +294,7 @@ fn is_passing(error: &tungstenite::Error) -> bool {
 impl Transport for Relay {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Ok(to) = <[u8; ADDRESS_BYTES]>::try_from(to.bytes()) else { return };
-        let Some(socket) = self.socket() else { return };
+        let Some((socket, _)) = self.connection() else { return };
         if let Err(error) = socket.send(Message::binary(frame(to, packet)))
             && !is_passing(&error)
         {
@@ -266,7 +304,12 @@ impl Transport for Relay {
 
     fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
         loop {
-            match self.socket()?.read() {
+            let (socket, silence) = self.connection()?;
+            let message = socket.read();
+            if message.is_ok() {
+                silence.heard(Instant::now());
+            }
+            match message {
                 Ok(Message::Binary(bytes)) => {
                     if let Some((from, datagram)) = unframe(&bytes)
                         && let Some(from) = Address::new(&from)
@@ -280,7 +323,10 @@ impl Transport for Relay {
                 }
                 // A ping needs no action here: the next read or write answers it.
                 Ok(_) => {}
-                Err(error) if is_passing(&error) => return None,
+                Err(error) if is_passing(&error) => {
+                    self.check_silence();
+                    return None;
+                }
                 Err(_) => self.reconnect(),
             }
         }

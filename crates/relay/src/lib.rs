@@ -10,6 +10,7 @@ mod client;
 mod frame;
 #[cfg(feature = "server")]
 mod server;
+mod silence;
 
 pub use client::{Relay, RelayError};
 pub use frame::ADDRESS_BYTES;

@@ -154,6 +154,28 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
     });
 }
 
+/// Otherwise the old member's thread would replace the connection of a new member with its secret.
+#[test]
+fn a_dropped_member_does_not_connect_again() {
+    let server = Running::start(Limits::default());
+    let address = server.address;
+    let mut old = server.enter("room", 1);
+    drop(server);
+    until("the loss", || {
+        assert_eq!(old.receive(), None);
+        (!old.is_open()).then_some(())
+    });
+    drop(old);
+    let server = Running::start_at(address, Limits::default());
+    let mut new = server.enter("room", 1);
+    // The first pause of a reconnection is 250 ms, the second one 500 ms.
+    for _ in 0..500 {
+        assert_eq!(new.receive(), None);
+        assert!(new.is_open(), "the connection was replaced");
+        thread::sleep(STEP);
+    }
+}
+
 #[test]
 fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     let queue_bytes = 64 * 1024;
