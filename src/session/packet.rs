@@ -83,7 +83,7 @@ pub(super) struct Composer {
 /// Offset of the flags, which follow the checksum and the sender.
 const FLAGS_AT: usize = 8;
 /// Bytes kept free for the counts of the sections that may follow.
-const RESERVE: usize = 4;
+pub(super) const RESERVE: usize = 4;
 
 impl Composer {
     pub(super) fn new(header: &Header, row: &[u8]) -> Self {
@@ -102,21 +102,23 @@ impl Composer {
         Composer { bytes, flags }
     }
 
-    /// Appends a section with as many parts as fit. A section without parts is left out.
+    /// Appends a section with as many parts as fit, and leaves `room` bytes free. A section without parts is left out.
+    /// Returns the number of parts.
     fn section<T>(
         &mut self,
         flag: u8,
         most: usize,
+        room: usize,
         parts: impl IntoIterator<Item = T>,
         mut write: impl FnMut(T, &mut Vec<u8>),
-    ) {
+    ) -> u8 {
         let at = self.bytes.len();
         self.bytes.push(0);
         let mut count = 0;
         for part in parts.into_iter().take(most) {
             let end = self.bytes.len();
             write(part, &mut self.bytes);
-            if self.bytes.len() + RESERVE > PACKET_BYTES_MAX {
+            if self.bytes.len() + room > PACKET_BYTES_MAX {
                 self.bytes.truncate(end);
                 break;
             }
@@ -124,12 +126,13 @@ impl Composer {
         }
         if count == 0 {
             self.bytes.truncate(at);
-            return;
+            return 0;
         }
         self.flags |= flag;
         if let Some(byte) = self.bytes.get_mut(at) {
             *byte = count;
         }
+        count
     }
 
     /// Appends changes that lead to views `first` and later.
@@ -137,29 +140,50 @@ impl Composer {
         let at = self.bytes.len();
         self.bytes.put_var(first);
         let flags = self.flags;
-        self.section(flag::CHANGES, CHANGES_MAX, changes, Change::write);
+        self.section(flag::CHANGES, CHANGES_MAX, RESERVE, changes, Change::write);
         if self.flags == flags {
             self.bytes.truncate(at);
         }
     }
 
-    /// Appends input runs: span, first tick, inputs of `size` bytes each.
-    pub(super) fn runs<'a>(&mut self, size: usize, runs: impl IntoIterator<Item = (u16, Tick, &'a [u8])>) {
+    /// Appends input runs: span, first tick, inputs of `size` bytes each. `room` bytes are left free. A run that does not
+    /// fit is shortened. Returns the first tick that was left out of each run; runs beyond the packet are not listed.
+    pub(super) fn runs<'a>(
+        &mut self,
+        size: usize,
+        room: usize,
+        runs: impl IntoIterator<Item = (u16, Tick, &'a [u8])>,
+    ) -> Vec<Tick> {
         let mut total = 0;
         let fitting = runs.into_iter().take_while(|(_, _, inputs)| {
             total += inputs.len();
             total <= INPUTS_MAX
         });
-        self.section(flag::RUNS, RUNS_MAX, fitting, |(span, start, inputs), bytes| {
-            bytes.put_var(u32::from(span));
-            bytes.put_var(start);
-            bytes.put_count(inputs.len() / size.max(1));
-            runs::encode(inputs, size, bytes);
+        let most = PACKET_BYTES_MAX.saturating_sub(room);
+        let mut ends = Vec::new();
+        let count = self.section(flag::RUNS, RUNS_MAX, room, fitting, |(span, start, inputs), bytes| {
+            let at = bytes.len();
+            let mut ticks = inputs.len() / size.max(1);
+            loop {
+                bytes.truncate(at);
+                bytes.put_var(u32::from(span));
+                bytes.put_var(start);
+                bytes.put_count(ticks);
+                runs::encode(inputs.get(..ticks * size).unwrap_or(inputs), size, bytes);
+                if bytes.len() <= most || ticks <= 1 {
+                    break;
+                }
+                let share = ticks * most.saturating_sub(at) / (bytes.len() - at);
+                ticks = share.clamp(1, ticks - 1);
+            }
+            ends.push(start.saturating_add(Tick::try_from(ticks).unwrap_or(0)));
         });
+        ends.truncate(usize::from(count));
+        ends
     }
 
     pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) {
-        self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, rows, |(id, row), bytes| {
+        self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, RESERVE, rows, |(id, row), bytes| {
             bytes.put_u32(id.0);
             row.write(bytes);
         });

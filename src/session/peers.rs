@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::id::{Key, PeerId};
+use super::id::{Key, PeerId, Tick};
 use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
@@ -26,6 +26,8 @@ pub(super) struct Remote {
     pub(super) attached: bool,
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
+    /// For each span whose last run did not fit in a packet, the tick at which the next run continues.
+    pub(super) resumes: Vec<(u16, Tick)>,
     pub(super) link: Link,
 }
 
@@ -67,6 +69,7 @@ impl Peers {
             contact: now,
             attached: false,
             faulty: false,
+            resumes: Vec::new(),
             link: Link::default(),
         });
     }

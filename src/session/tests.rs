@@ -49,7 +49,7 @@ fn packet_bytes() -> Vec<u8> {
     row().write(&mut own);
     let mut composer = Composer::new(&header, &own);
     composer.changes(4, [&change(), &change()]);
-    composer.runs(2, [(0, 500, &[1, 2, 1, 2, 3, 4][..]), (9, 77, &[0; 128])]);
+    composer.runs(2, 4, [(0, 500, &[1, 2, 1, 2, 3, 4][..]), (9, 77, &[0; 128])]);
     composer.foreign([(PeerId(21), &row())]);
     composer.finish(5)
 }
@@ -76,7 +76,7 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(own.len(), 21);
     let header = Header { sender: PeerId(11), sequence: 12, sent: 13, echo: Some(14) };
     let mut composer = Composer::new(&header, &own);
-    composer.runs(1, [(0, 60_000, &[3; 8][..])]);
+    composer.runs(1, 4, [(0, 60_000, &[3; 8][..])]);
     assert_eq!(composer.finish(5).len(), 45);
 }
 

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::config::Fault;
 use super::id::{PeerId, Tick};
 use super::link::stamp;
-use super::packet::{Composer, Header, RUN_TICKS_MAX};
+use super::packet::{Composer, Header, RESERVE, RUN_TICKS_MAX};
 use super::peers::{Remote, within};
 use super::row::{Row, STRANGERS_MAX};
 use super::state::Session;
@@ -31,8 +31,13 @@ const HELP_TICKS: Tick = 20;
 const TRY_ROWS: u32 = 8;
 /// Upper bound of [`Session::send_interval`] with up to 16 peers, in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
+/// Bytes of the sender's id before a foreign row.
+const ROW_ID_BYTES: usize = 4;
 /// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
+
+/// Inputs in a packet: span, first tick, inputs.
+type Run<'a> = (u16, Tick, &'a [u8]);
 
 impl Session {
     /// Usual time between packets: a tick, at most [`INTERVAL_MAX`]; doubled above 16 known peers, tripled above 32.
@@ -148,8 +153,17 @@ impl Session {
         let all = if behind { 0..self.view.spans.len() } else { 0..0 };
         let live = if behind { &[] } else { self.progress.live.as_slice() };
         let spans = all.chain(live.iter().copied());
-        packet.runs(self.log.size(), spans.filter_map(|span| self.run_for(to, span)));
         let foreign = self.foreign_rows(to);
+        let mut first_row = Vec::new();
+        if let Some(row) = foreign.first().and_then(|remote| remote.row.as_ref()) {
+            row.write(&mut first_row);
+        }
+        // Long runs leave room for a row. Other spans come first in turn, because the first run may fill the packet.
+        let mut runs: Vec<_> = spans.filter_map(|span| self.run_for(to, span)).collect();
+        rotate(&mut runs, self.outbox.version);
+        let room = RESERVE + ROW_ID_BYTES + first_row.len();
+        let ends = packet.runs(self.log.size(), room, runs.iter().copied());
+        let resumes = next_resumes(&to.resumes, self.log.size(), &runs, &ends);
         packet.foreign(
             foreign
                 .iter()
@@ -160,6 +174,7 @@ impl Session {
         let id = to.id;
         if let Some(to) = self.peers.list.get_mut(place) {
             to.link.sent(bytes.len());
+            to.resumes = resumes;
         }
         self.outbox.packets.push_back((id, bytes));
     }
@@ -185,9 +200,9 @@ impl Session {
         }
     }
 
-    /// The oldest inputs of a span that the receiver lacks: span, first tick, inputs. Inputs of another peer are
-    /// relayed if the receiver does not hear that peer or lacks many of its inputs.
-    fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
+    /// The oldest inputs of a span that the receiver lacks, or those that follow if the last packet had no room for all.
+    /// Inputs of another peer are relayed if the receiver does not hear that peer or lacks many of its inputs.
+    fn run_for(&self, receiver: &Remote, index: usize) -> Option<Run<'_>> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);
         let until = self.log.next(index).min(span.until);
@@ -198,8 +213,11 @@ impl Session {
         if span.owner != self.me && (self.config.has(Fault::NoRelay) || !helps()) {
             return None;
         }
+        let number = u16::try_from(index).ok()?;
+        let resume = receiver.resumes.iter().find(|(span, _)| *span == number).map(|(_, tick)| *tick);
+        let start = resume.filter(|tick| (start..until).contains(tick)).unwrap_or(start);
         let inputs = self.log.range(index, start, until.min(start.saturating_add(RUN_TICKS_MAX)))?;
-        Some((u16::try_from(index).ok()?, start, inputs))
+        Some((number, start, inputs))
     }
 
     /// Rows of voters and of peers that request seats, if the receiver does not hear them. Their order changes with
@@ -216,10 +234,26 @@ impl Session {
                 matters && other.id != receiver.id && other.row.is_some() && !self.hears(receiver, other.id)
             })
             .collect();
-        if !rows.is_empty() {
-            let turn = usize::try_from(self.outbox.version).unwrap_or(0) % rows.len();
-            rows.rotate_left(turn);
-        }
+        rotate(&mut rows, self.outbox.version);
         rows
+    }
+}
+
+/// For each span whose run did not fit in a packet, the first tick of its run in the next packet. Without this, each
+/// packet would repeat the same inputs until they are acknowledged.
+fn next_resumes(before: &[(u16, Tick)], size: usize, runs: &[Run], ends: &[Tick]) -> Vec<(u16, Tick)> {
+    let waits = |span: u16| runs.iter().skip(ends.len()).any(|(waiting, ..)| *waiting == span);
+    let is_cut = |&((_, start, inputs), end): &(&Run, &Tick)| {
+        usize::try_from(end - start).is_ok_and(|ticks| ticks * size < inputs.len())
+    };
+    let kept = before.iter().copied().filter(|(span, _)| waits(*span));
+    let cut = runs.iter().zip(ends).filter(is_cut).map(|((span, ..), end)| (*span, *end));
+    kept.chain(cut).collect()
+}
+
+/// Moves the parts of a packet so that another one is first in each row version.
+fn rotate<T>(parts: &mut [T], version: u32) {
+    if let Some(turn) = usize::try_from(version).unwrap_or(0).checked_rem(parts.len()) {
+        parts.rotate_left(turn);
     }
 }

@@ -17,6 +17,7 @@ pub(crate) fn players(count: usize, link: LinkConditions, configure: impl Fn(&mu
     }
     let mut config = Config::new(5, count as u8);
     configure(&mut config);
+    sim.input_bytes = u64::from(config.input_bytes);
     for index in 0..count {
         let skew = [1000, 1003, 998, 1001, 999, 1002, 1000, 997][index % 8];
         sim.add(config.clone(), Role::Player { seats: 1 }, &first, skew);
@@ -159,4 +160,19 @@ fn a_match_keeps_its_pace_when_the_latency_falls() {
     assert_eq!(sim.failure, None);
     let played = sim.peers[0].session.played() - before;
     assert!((297..320).contains(&played), "{played} ticks in 5 s");
+}
+
+/// The inputs of a round trip do not fit in one packet.
+#[test]
+fn large_inputs_play_at_full_speed() {
+    for (input_bytes, count, latency) in [(512, 2, 40), (512, 2, 100), (512, 4, 40), (200, 4, 100)] {
+        for loss in [0, 2] {
+            let mut sim = players(count, LinkConditions { loss, ..link(latency * MS) }, |config| {
+                config.input_bytes = input_bytes
+            });
+            let pace = pace(&mut sim, 20);
+            let case = format!("{input_bytes} bytes, {count} players, {latency} ms, {loss} % loss");
+            assert!(pace >= 5500, "{case}: {pace} hundredths of a tick per second");
+        }
+    }
 }

@@ -108,6 +108,8 @@ pub(crate) struct Sim {
     pub(crate) sent: u64,
     pub(crate) bytes: u64,
     pub(crate) expects_conflicts: bool,
+    /// Size of an input. All bytes but the first are random.
+    pub(crate) input_bytes: u64,
 }
 
 pub(crate) fn id(index: usize) -> PeerId {
@@ -140,6 +142,7 @@ impl Sim {
             sent: 0,
             bytes: 0,
             expects_conflicts: false,
+            input_bytes: 1,
         }
     }
 
@@ -261,7 +264,11 @@ impl Sim {
         while !peer.in_menu && peer.session.is_due(local) && turns < 8 {
             turns += 1;
             let seats = peer.session.seats().count_ones() as u64;
-            let input: Vec<u8> = (0..seats).map(|seat| (mix(peer.input, seat) % 5) as u8).collect();
+            let first = |seat| (mix(peer.input, seat) % 5) as u8;
+            let random = |seat, at| mix(mix(local, seat), at) as u8;
+            let size = self.input_bytes;
+            let one = |seat| std::iter::once(first(seat)).chain((1..size).map(move |at| random(seat, at)));
+            let input: Vec<u8> = (0..seats).flat_map(one).collect();
             if peer.session.advance(local, &input) == Ok(true) {
                 // A peer holds its input for a while.
                 peer.input =

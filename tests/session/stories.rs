@@ -66,6 +66,37 @@ fn an_outage_of_all_that_is_shorter_than_the_patience_costs_nobody_a_seat() {
     assert_eq!((sim.failure.clone(), sim.peers[0].session.view().number), (None, 0));
 }
 
+/// The inputs that a peer lacks after an outage do not fit in one packet.
+#[test]
+fn large_inputs_arrive_after_an_outage() {
+    for (input_bytes, count) in [(512, 2), (200, 3), (64, 4)] {
+        let mut sim = players(count, link(40 * MS), |config| config.input_bytes = input_bytes);
+        sim.run(2 * S);
+        for a in 0..count {
+            (0..a).for_each(|b| cut(&mut sim, a, b, 2700 * MS));
+        }
+        sim.run(2700 * MS);
+        let still = played(&sim, 0);
+        sim.run(6 * S);
+        assert!(played(&sim, 0) > still + 150, "{input_bytes} bytes: {} ticks", played(&sim, 0) - still);
+        assert_eq!((sim.failure.clone(), sim.peers[0].session.view().number), (None, 0));
+    }
+}
+
+/// Another peer relays the inputs of two peers that do not hear each other.
+#[test]
+fn large_inputs_are_relayed() {
+    let mut sim = players(3, link(40 * MS), |config| config.input_bytes = 400);
+    cut(&mut sim, 0, 1, 100 * S);
+    sim.run(8 * S);
+    assert!(
+        (0..3).all(|index| played(&sim, index) > 300),
+        "{:?}",
+        [0, 1, 2].map(|index| played(&sim, index))
+    );
+    assert_eq!((sim.failure.clone(), sim.peers[0].session.view().number), (None, 0));
+}
+
 #[test]
 fn a_crash_of_the_host_ends_no_match() {
     let mut sim = players(4, link(40 * MS), |_| ());
