@@ -89,9 +89,8 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. A string that needs more than
-/// the remaining bytes is reported as missing bytes if it exceeds them by at most this number, and as too long
-/// otherwise.
+/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. If at most this many bytes of
+/// a string are missing, the decoder reports an unexpected end, otherwise an exceeded limit.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.

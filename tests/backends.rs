@@ -183,7 +183,7 @@ fn faults_are_counted_equally_on_every_backend_and_number_of_threads() {
     });
 }
 
-/// A sweep checks every case, samples the first and the last, and fails with any case.
+/// A sample includes the first and the last case. A sweep checks every case, and fails if one of them fails.
 #[test]
 fn a_sweep_checks_its_ends_and_fails_with_any_case() {
     let sampled = sweep::sample(0..100, 7);

@@ -302,7 +302,7 @@ fn a_lift_that_comes_up_takes_the_character_along() {
     }
 }
 
-/// Its feet have moved with the platform meanwhile, but a jump starts with the velocity of the platform.
+/// The next move carries the rider by the platform's whole displacement, but a jump takes the platform's velocity.
 #[test]
 fn a_rider_that_was_not_moved_for_some_ticks_keeps_the_speed_of_the_platform() {
     for (waits, teleport) in [(0, None), (1, None), (29, None), (0, Some(fx!(-20)))] {

@@ -63,7 +63,7 @@ pub struct SceneResult {
     pub vs_rapier_quartiles: Option<[f64; 2]>,
     /// Wall-clock time per step in ms.
     pub wall_ms: Each<Option<f64>>,
-    /// CPU time in ms per step of the commands between steps. No other value includes it.
+    /// CPU time of the commands between steps, in ms per step. No other value includes it.
     pub commands_ms: Each<Option<f64>>,
     /// State after the last step.
     pub end: Each<Option<EndState>>,

@@ -1,8 +1,9 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
 //! Commands refer to bodies by handles that earlier commands created. So each command is executed once, on a world that
-//! is never stepped, and stored with its outcome. The commands of the scenes in [`SCENES`] depend on which bodies exist
-//! and on nothing else in the world, so the list is valid for every engine.
+//! is never stepped, and stored with its outcome. The list is valid for every engine, because the commands of the
+//! scenes in [`SCENES`] depend only on what earlier commands have set, such as the user data of bodies, and not on
+//! results of the simulation.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};

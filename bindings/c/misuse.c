@@ -146,6 +146,6 @@ int main(void) {
         fprintf(stderr, "%zu objects are left\n", ls2d_object_count());
         return 1;
     }
-    puts("every misuse is a code");
+    puts("every misuse returns the expected code");
     return 0;
 }

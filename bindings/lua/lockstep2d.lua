@@ -45,7 +45,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- `ffi.cdef` has no preprocessor.
+-- Removes comments and directives, because `ffi.cdef` has no preprocessor.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
 assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")

@@ -135,7 +135,7 @@ export function rotate(vector: Vec, angle: Rotation): Vec2;
 export function hashBytes(bytes: Uint8Array): string;
 /** A random number generator. Keep `state` in the state of the game. */
 export class Random {
-    /** `seed` is an integer, of which the lower 64 bits count. */
+    /** `seed` is an integer of 64 bits, with or without a sign. */
     constructor(seed: number | bigint);
     /** State of the generator. Assign a saved state to continue from it. */
     state: { state: bigint; increment: bigint };
@@ -618,7 +618,7 @@ export interface ShapeInfo {
     type: "circle" | "segment" | "polygon" | "capsule" | "link";
     body: BodyId;
     /** In metres from the shape's centre: none of a circle, the ends of a segment or capsule, the corners of a polygon,
-     * or the ends of a link and the far ends of its neighbours. */
+     * or the ends of a link and the far ends of its neighbours (zero without a neighbour). */
     points: Vec2[];
     /** Radius of a circle or capsule, or rounding, in metres. */
     radius: Fx;
@@ -768,7 +768,7 @@ export class World extends Edits {
     shape(shape: ShapeId): ShapeInfo;
     /** A box around a shape, with a margin, in metres in the world. */
     shapeBox(shape: ShapeId): { lower: Vec2; upper: Vec2 };
-    /** Distance in metres, negative if the shapes overlap. Undefined if one is not in the world or disabled. */
+    /** Distance in metres, negative if the shapes overlap. Undefined if one is disabled or not in the world. */
     shapeDistance(a: ShapeId, b: ShapeId): Fx | undefined;
     joint(joint: JointId): JointInfo;
     /** In the world, in metres. */
@@ -971,7 +971,7 @@ export class Recorder extends Handle {
     /** Adds a result such as a score, with a name of 1 to 64 bytes. A replay has at most 256 results, with different
      * names. They can be read without playing the replay. */
     claim(name: string, number: number | bigint): void;
-    /** Passes the hash of the state after the tick of `record`. */
+    /** Passes the hash of the state after the last recorded tick. */
     checkpoint(hash: string): void;
     /** The bytes finished since the last call, to be appended to a file. */
     take(): Uint8Array;
@@ -1000,7 +1000,7 @@ export class Replay extends Handle {
     check(hash: string): void;
     /** Adds a result of the game that was played, which the verdict compares with `claims`. */
     claim(name: string, number: number | bigint): void;
-    /** The verdict after the last tick or after a difference, for the hash of the current state. */
+    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state. */
     verdict(hash: string): Verdict;
     /** Starts seeking to a tick; `ReplayDriver` fulfils the requests. At the first call the game has to be in its first
      * state. */
@@ -1032,9 +1032,10 @@ export class ReplayDriver<Saved = unknown> {
     constructor(replay: Replay, game: ReplayGame<Saved>);
     /** The number of ticks that led to the current state. */
     readonly tick: number;
-    /** Goes to a tick, from a saved state. Throws `RECORD` if the game diverges from the file; the driver then stays at
-     * that tick, and earlier ticks can be reached. An error of the game is thrown as it is. After it, and if the replay
-     * was read without this driver, `seek` throws `VALUE` unless a saved state leads to the tick. */
+    /** Goes to a tick, from a saved state. Throws `RECORD` if the game diverges from the file. The driver then stays at
+     * the checkpoint that differs, and only earlier ticks can be reached. An error of the game is thrown unchanged.
+     * After such an error, or if the replay was read without this driver, `seek` throws `VALUE` unless a saved state
+     * leads to the tick. */
     seek(tick: number): void;
     /** Goes forward by a tick, which is simulated. Returns false at the end. */
     step(): boolean;
@@ -1073,7 +1074,7 @@ export interface MatchOptions {
     history?: number;
     /** Minimum number of final ticks whose inputs are kept for peers that return: 36 000 by default. */
     logTicks?: number;
-    /** Ticks from the effect of a join to the first tick of the peer: 8 by default. */
+    /** Ticks from the agreement that a peer joins to its first tick, besides three round trips: 8 by default. */
     seatLead?: number;
     /** A peer may have a seat if it lags by at most this many ticks: 40 by default. */
     seatWithin?: number;
@@ -1152,7 +1153,7 @@ export interface MatchEvent {
  * - `load`: restore the copy of the state before `tick`.
  * - `advance`: simulate `tick` with the `inputs` of all seats in order.
  * - `checksum`: pass the hash of the copy of the state before `tick` to `reportHash`.
- * - `forget`: copies of states before `tick` are not needed. */
+ * - `forget`: copies for ticks below `tick` are no longer needed. */
 export interface MatchRequest {
     kind: "save" | "load" | "advance" | "checksum" | "forget";
     /** From 0. */
@@ -1165,7 +1166,9 @@ export interface MatchRequest {
     guessed: bigint;
 }
 /** One participant of a match. Inputs, states and packets are bytes. `now` is in milliseconds and must not decrease, as
- * `performance.now()`. `MatchDriver` fulfils the requests. Misuse is a `Lockstep2dError`. */
+ * `performance.now()`. `MatchDriver` fulfils the requests. Misuse is a `Lockstep2dError`. While the status is
+ * `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`, `link`, `advance`, `reportHash`, `leave`,
+ * and all functions below `leave`. */
 export class Match extends Handle {
     #private;
     /** Opens a match, or joins one through a `contact`. An option out of range throws `CONFIG` or `VALUE`. */
@@ -1192,9 +1195,8 @@ export class Match extends Handle {
     /** Offers the encoded state after `tick` final ticks to peers that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
-    /** `played` is the number of ticks played, `final` of ticks with final inputs, `confirmed` of ticks played with
-     * final inputs. While the status is `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`,
-     * `link`, `advance`, `reportHash`, `leave`, and all functions below `leave`. */
+    /** Numbers of ticks: `played` ticks were played, `final` ticks have final inputs, and `confirmed` ticks were played
+     * with final inputs. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick; undefined if the tick is not final yet or they are no longer kept. */
     finalInputs(tick: number): TickInputs | undefined;
@@ -1205,8 +1207,8 @@ export class Match extends Handle {
     link(peer: number): { ping: number; loss: number; delay: number } | undefined;
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
-    /** Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
-     * has decided, other peers can get seats. */
+    /** Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+     * majority has decided on the end, other peers can get seats. */
     endAt(ticks: number): void;
     /** Requests a pause, or withdraws the request. */
     pause(paused: boolean): void;
@@ -1232,7 +1234,7 @@ export class MatchDriver<Saved = unknown> {
     readonly match: Match;
     /** Number of ticks played, including those with guessed inputs. */
     readonly tick: number;
-    /** Whether the game has played all ticks of a finished match with final inputs. */
+    /** Whether the match is finished, and the game has played all its ticks with final inputs. */
     readonly ended: boolean;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`

@@ -1,8 +1,9 @@
 // A match through the relay: node bindings/npm/test-relay.mjs RELAY PUSH LOCKSTEP2D
 //
 // The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
-// Node and a native one play 3000 ticks. One of those in Node is paused for five seconds, the other is restarted with
-// its key. All three end with the same hash. The peers that play from the first tick write equal replays, which verify.
+// Node and a native one play 3000 ticks. The first peer in Node is paused for five seconds, and the second is restarted
+// with its key. All three end with the same hash. The peers that play from the first tick write equal replays, which
+// verify.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";

@@ -11,9 +11,9 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// Maximum cost of a run: the sum of [`generator::cost`] and the square of the number of shapes divided by 64.
+/// Maximum cost of a run: [`generator::cost`] plus `n * n / 64` with `n` shapes, summed over the ticks.
 const COST_MAX: u64 = 120_000;
-/// Number of shapes at which no bodies are added, because brute force compares all pairs.
+/// From this number of shapes on, no bodies are added, because brute force compares all pairs.
 const SHAPES_MAX: usize = 600;
 
 /// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.

@@ -98,7 +98,7 @@ impl Generator {
     /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
         let edge = WORLD_EXTENT_MAX - fx!(3);
-        // Bodies at the edge of the world are clamped, which counts as a fault.
+        // Ordinary scenes are not at the edge of the world, because clamping a body there counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_ordinary() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });

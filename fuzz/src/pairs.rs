@@ -11,13 +11,13 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference in metres between two separations, or between a separation and a distance. A face of the second
-/// shape must be better by half a millimetre to be chosen. Outlines within another half a millimetre of each other
-/// count as touching.
+/// Maximum difference in metres between two separations, or between a separation and a distance: 0.5 mm, because a face
+/// of the second shape is chosen only if it is better than the best face of the first by more than that; 0.5 mm,
+/// because outlines up to that far apart count as touching; and 1 µm for rounding.
 const ERROR: Fx = fx!(0.001001);
 /// Maximum difference in metres between the distances of A from B and of B from A: twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
-/// The size divided by this number is added to [`DISTANCE_ERROR`].
+/// The distance of the nearest points plus 250 m, divided by this number, is added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;
 
 #[derive(Clone)]
@@ -49,8 +49,8 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
         let position = source.mostly_vec(-reach, reach);
         let angle = source.angle();
-        // A pair that has hardly moved keeps its manifold, which may be that of a tie. Therefore only contacts of new
-        // worlds are compared with the distance and with those of exchanged shapes.
+        // A pair that has hardly moved keeps its manifold, even if a new search would choose another face. Therefore
+        // only contacts of new worlds are compared with the distance, and with the contact of the exchanged shapes.
         let (mut fresh, mut swapped) = (new.clone(), new_swapped.clone());
         for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.place(position, angle);

@@ -110,7 +110,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
         Ok(found) => found,
         Err(_) => return "not compared",
     };
-    // The right side has followed the rules, so it must not be blamed.
+    // Side B has followed the rules, so it must not be blamed.
     assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
     let mirrored = compare::<Sandbox>(&right, &left, &limits).map(|found| found.blame);
     let same = match (found.blame, &mirrored) {

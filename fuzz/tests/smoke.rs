@@ -1,4 +1,4 @@
-//! Runs 200 to 20 000 random inputs for each of most targets without the fuzzer.
+//! Runs most targets without the fuzzer, each with 200 to 20 000 random inputs.
 
 use lockstep2d::math::Rng;
 use lockstep2d_fuzz::manifolds::Seen;

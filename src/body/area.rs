@@ -9,10 +9,10 @@
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! Between two parentheses, `x` is the cross product. Elsewhere it is the body's centre of mass. `k` is the radius of
-//! gyration, and `v` and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of
-//! each area that acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the
-//! angular velocity of the area's body. The effects of several areas add up.
+//! `) x (` is the cross product, and any other `x` the body's centre of mass. `k` is the radius of gyration, and `v`
+//! and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of each area that
+//! acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the angular velocity
+//! of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 

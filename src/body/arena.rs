@@ -86,7 +86,8 @@ define_handle! {
     BodyId
 }
 define_handle! {
-    /// Handle of a shape. Valid until that shape is removed or its body is despawned.
+    /// Handle of a shape. Valid until that shape is removed, its body is despawned, or a state from before its creation
+    /// is restored.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef, ShapeId}, fx, world::World};
@@ -121,7 +122,8 @@ define_handle! {
     IslandId
 }
 define_handle! {
-    /// Handle of a joint. Valid until that joint is removed or one of its bodies is despawned.
+    /// Handle of a joint. Valid until that joint is removed, one of its bodies is despawned, or a state from before its
+    /// creation is restored.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, JointId}, fx, solver::{JointDef, Revolute}, world::World};
@@ -243,7 +245,7 @@ impl<T, H: Handle> Arena<T, H> {
         self.get(handle)?;
         let slot = &mut self.slots[handle.slot() as usize];
         let value = slot.value.take();
-        // Retired, not wrapped: an old handle must never resolve.
+        // A slot with an exhausted generation is retired: after a wrap, old handles would resolve to new values.
         if slot.generation < u32::MAX {
             slot.generation += 1;
             self.free.push(handle.slot());

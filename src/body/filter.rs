@@ -44,7 +44,7 @@ impl Filter {
         let Filter { category, mask, group } = *self;
         let class = match group {
             ..0 => i64::from(group),
-            // Each mask excludes the other shape.
+            // If two such shapes have the same category, their masks exclude each other.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };

@@ -48,8 +48,8 @@ pub enum Geometry {
         /// Radius in metres, at least 0.002. The capsule extends at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
-    /// A segment of a [`Chain`](super::Chain). At an end with a neighbour, contacts have only normals that the whole
-    /// chain allows.
+    /// A segment of a [`Chain`](super::Chain). At an end with a neighbour, contact normals are those of the two links
+    /// and, at a convex corner, those between them.
     Link {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,

@@ -74,8 +74,8 @@ pub struct Material {
     /// never come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
-    /// of the radius. A pair uses the larger value and the larger radius, so that on round ground that is larger than
-    /// the wheel the value has to be smaller in proportion. A wheel on level ground loses
+    /// of the radius. A pair uses the larger value and the larger radius. For a wheel on round ground with a larger
+    /// radius, reduce the value in the ratio of the radii. A wheel on level ground loses
     /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
     pub rolling_resistance: Fx,
     /// Surface speed in m/s, clockwise around the shape, ±400: the upper side of a conveyor belt with a positive speed

@@ -77,7 +77,7 @@ impl fmt::Debug for Name {
     }
 }
 
-/// As text in human-readable formats, and as 16 bytes in binary formats.
+/// A name is text in human-readable formats, and 16 bytes in binary formats.
 impl Serialize for Name {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if serializer.is_human_readable() {

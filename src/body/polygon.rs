@@ -67,8 +67,8 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners that are flat or closed to within about 0.0001 rad: a point beside one of the two edges may be
-    /// classified as beside the other.
+    /// Avoid corners with an angle within about 0.0001 rad of 0 or of 180 degrees: a point beside one of the two edges
+    /// may be classified as beside the other.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not
@@ -142,7 +142,7 @@ impl Polygon {
     /// Returns the polygon rotated about the shape's centre.
     ///
     /// # Errors
-    /// If the outline leaves the range, or is not valid after its vertices have been rounded.
+    /// If the outline leaves the range, or is not valid after its coordinates have been rounded to [`Length`].
     pub fn rotated(&self, angle: Angle) -> Result<Self, GeometryError> {
         let rotation = Rot::from_angle(angle);
         self.mapped(|vertex| rotation.apply_wide(vertex))
@@ -151,7 +151,7 @@ impl Polygon {
     /// Returns the polygon translated relative to the shape's centre, in metres.
     ///
     /// # Errors
-    /// If the outline leaves the range, or is not valid after its vertices have been rounded.
+    /// If the outline leaves the range, or is not valid after its coordinates have been rounded to [`Length`].
     pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
         self.mapped(|vertex| vertex + by)
     }

@@ -8,9 +8,9 @@ use crate::math::Fx;
 
 /// Locked degrees of freedom of a body.
 ///
-/// Contacts and joints treat a body with locked rotation as unable to rotate. A lock of an axis only clears the
-/// velocity along that axis in every sub-step. A body that is pushed both along and across the axis therefore takes a
-/// few ticks to settle.
+/// Contacts and joints treat a body with locked rotation as unable to rotate. They ignore a locked axis: every sub-step
+/// clears the velocity along that axis afterwards. A body that is pushed both along and across the axis therefore takes
+/// a few ticks to settle.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};

@@ -58,7 +58,7 @@ pub struct ShapeDef {
     /// The platform is solid if the contact normal, from the platform to the other shape, is within 60 degrees of the
     /// direction. Otherwise the other shape passes, and the pair does not touch. It continues to pass while the shapes
     /// overlap along the direction by more than a quarter of the world's speculative distance (for small shapes, a 32nd
-    /// of the smaller extent).
+    /// of the longer side of the smaller shape).
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
     /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors only if [`EventSwitches::detect_sensors`]
@@ -323,7 +323,7 @@ impl Shape {
         self.def.area.as_ref()
     }
 
-    /// Whether the shape is an area that acts on another shape of a dynamic body.
+    /// Whether the shape is an area that acts on the other shape if that belongs to a dynamic body.
     pub(crate) fn acts_on(&self, other: &Shape) -> bool {
         self.def.area.is_some() && !other.is_sensor() && self.detects(other)
     }

@@ -27,7 +27,7 @@ pub enum Variant {
     Again,
     /// Hash, work, claims and save are polled twice after every tick, which must not change the state.
     HashPolled,
-    /// The hash is polled after the last tick only, and must be the same.
+    /// The hash is polled only after the last tick. It must equal the hash of the reference run.
     HashUnpolled,
     /// Every [`CheckOptions::every`] ticks, the state is encoded, decoded and loaded into a new game, which continues.
     Reloaded,

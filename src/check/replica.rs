@@ -53,7 +53,7 @@ impl<G: Game> Replica<G> {
     pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         self.arrange();
         if self.variant == Variant::Again {
-            // The reference run has called `work` before this tick.
+            // The reference run calls `work` before each tick, so this variant does the same.
             let _work = self.game.work(now.inputs);
         }
         let phases = step(&mut self.game, now.inputs, now.options.phases);

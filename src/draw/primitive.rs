@@ -27,7 +27,7 @@ pub struct Layers {
     pub contact_normals: bool,
     /// Normal and friction forces at the contact points.
     pub contact_forces: bool,
-    /// Contact points in the colours of the solver.
+    /// Contact points in the colours of the solver's graph colouring.
     pub solver_colours: bool,
     /// Anchors of enabled joints, their errors, and lines to the bodies that they connect.
     pub joints: bool,
@@ -206,7 +206,7 @@ pub enum Style {
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,
-    /// A contact point, in the colour of the solver.
+    /// A contact point, in the colour of its group in the solver's graph colouring.
     SolverGroup(Hue),
     /// A contact point without a solver colour, because its bodies have too many contacts. The solver solves such
     /// points one by one.

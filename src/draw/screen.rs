@@ -9,8 +9,9 @@ use core::fmt;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
-/// Minimum width and height of the window in metres. With a much narrower window, the largest polygons (110 m from the
-/// centre to a side) would have coordinates above 2^23 pixels, at which common renderers (cairo) overflow.
+/// Minimum width and height of the window in metres. With a much narrower window in a picture of 960 pixels, the
+/// largest polygons (110 m from the centre to a side) would have coordinates above 2^23 pixels, at which common
+/// renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 
 /// A coordinate or length in hundredths of a pixel.
@@ -47,7 +48,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Shows a window as large as fits into `size` pixels.
+    /// Shows a window at the largest scale at which it fits into `size` pixels.
     pub(super) fn new(window: Aabb, size: (u32, u32)) -> Self {
         let window = Aabb::new(window.lower.min(window.upper), window.lower.max(window.upper));
         let units = |lower: Fx, upper: Fx| {

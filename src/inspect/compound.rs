@@ -42,7 +42,7 @@ impl<'a> Compound<'a> {
         let bits = super::fields(value)?.first().and_then(|field| field.value.bits());
         match bits {
             Some(bits) => self.collector.push(Value::Fixed { bits, fraction_bits }),
-            // A number of more than 127 bits, or another struct with such a name.
+            // A number of more than 127 bits, or another struct whose name begins with `FixedI` or `FixedU`.
             None => self.collector.named(name, value)?,
         }
         Ok(())

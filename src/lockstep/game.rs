@@ -7,7 +7,8 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::hash::StateHash;
 use crate::world::World;
 
-/// Identifies the rules of a replay. Increment `version` with each change that may give another state.
+/// Identifies the rules of a replay. Increment `version` with each change of the rules that may change the states of
+/// existing replays.
 ///
 /// ```
 /// use lockstep2d::lockstep::RulesId;
@@ -144,7 +145,7 @@ pub trait Game: Sized {
     /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
     /// Complete copy of the state. Saves are sent to late joiners and compared between machines. Reports show the field
-    /// names of their human-readable serialization.
+    /// names of the save's human-readable serialization.
     type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.

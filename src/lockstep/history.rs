@@ -29,8 +29,7 @@ pub struct Past<S> {
     pub save: S,
 }
 
-/// Number of ticks kept in addition to two seconds, because entries of mispredicted ticks displace old ones until a
-/// rollback removes the mispredicted ones.
+/// Number of ticks kept in addition to two seconds: room for mispredicted ticks, which a rollback removes.
 const ROLLBACK_TICKS: u32 = 16;
 
 /// Saves and state hashes of the last ticks, for rollback and to examine a divergence at its first tick. Saves of a

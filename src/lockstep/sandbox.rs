@@ -113,8 +113,8 @@ impl Game for Sandbox {
         }
     }
 
-    /// Charges each command before its execution, and then the work that the world counts during it. The limit is at
-    /// most 100 million.
+    /// Charges the cost of each command before its execution, and then the work that the world has counted during it. A
+    /// `work_max` above 100 million counts as 100 million.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
@@ -180,8 +180,8 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// The bound of [`World::work`] with the added objects, plus the work of the commands. The world counts work that
-    /// is known only during the tick.
+    /// The bound of [`World::work`], including the objects that the commands add, plus the work of the commands. The
+    /// world counts the work that is known only during the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

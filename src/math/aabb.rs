@@ -151,7 +151,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! Relations between boxes are compared with those between their points on a small grid.
+    //! Relations between boxes are compared with those between the sets of grid points that the boxes contain.
 
     use super::*;
     use crate::fx;

@@ -31,7 +31,7 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // All but one of the bits are dropped before the addition, which can then overflow only for a shift of 1.
+    // All but one of the `shift` bits are dropped before the addition, which can overflow only for a shift of 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 

@@ -1,7 +1,7 @@
 //! `1 / x` with 31 significant bits, for `x` from 2^-30 to below 2^30.
 //!
 //! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of 500 m would have 16 significant bits, and that
-//! of 2 mm would overflow. A multiplication is one widening 32-bit product.
+//! of 2 mm would overflow. Multiplying by a [`Reciprocal`] takes one widening 32-bit product.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;

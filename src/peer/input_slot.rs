@@ -39,7 +39,7 @@ impl InputSlot {
         }
     }
 
-    /// Appends an input. An input that the peers would decode to another one is refused, as by a recording.
+    /// Appends an input. Like a recorder, refuses an input that does not survive encoding and decoding.
     pub(super) fn put<I: Serialize + DeserializeOwned>(
         self,
         input: &I,

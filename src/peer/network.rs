@@ -35,9 +35,9 @@ pub struct LinkConditions {
     pub jitter: Duration,
     /// Lost packets in percent.
     pub loss: u8,
-    /// Packets in percent that arrive twice.
+    /// Packets that are duplicated, in percent. Each copy may be lost.
     pub duplication: u8,
-    /// Packets in percent that are delayed by another 20 ms, so that later ones may overtake them.
+    /// Packets that are delayed by another 20 ms, in percent. Later packets may overtake them.
     pub reordering: u8,
 }
 

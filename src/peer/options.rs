@@ -90,7 +90,7 @@ impl PeerOptions {
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
         config.timing = Timing { patience, ..Timing::DEFAULT };
-        // Checkpoints of the replay need the hash of the state, so the save interval divides the checkpoint interval.
+        // Saves have the state hashes that checkpoints need, so the save interval divides the checkpoint interval.
         let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
@@ -104,8 +104,8 @@ impl PeerOptions {
     }
 }
 
-/// Replaces the name of the session's field by the name of the peer's option or the game's method that sets it. Value
-/// and range are those of the option or method.
+/// Replaces the name of the session's field by the name of the peer's option or the game's method that sets it. The
+/// error states the value and the range of that option or method.
 fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError {
     match (error.field, slot) {
         ("delay_min", _) => ConfigError { field: "delay.0", ..error },

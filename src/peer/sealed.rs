@@ -167,7 +167,7 @@ impl<T> Sealed<T> {
         let mut body = body.to_vec();
         let tag = Tag::from(*tag);
         self.cipher.decrypt_in_place_detached(&nonce(sender, counter), b"", &mut body, &tag).ok()?;
-        // The packet is authentic: no other packet changes the state.
+        // Packets that are not authentic do not get here, so they do not change the windows.
         self.received += 1;
         let at = known.unwrap_or_else(|| self.remember(sender));
         let window = self.windows.get_mut(at)?;

@@ -64,7 +64,7 @@ impl<G: Game> Simulation<G> {
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
         self.game.load(&save);
         if self.game.state_hash() != hash {
-            return Err(wrong(&"its hash is another one"));
+            return Err(wrong(&"it does not have the stated hash"));
         }
         if tick > 0 {
             self.recorder = None;

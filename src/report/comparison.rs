@@ -74,7 +74,7 @@ pub enum Blame {
     Side(Side),
     /// Both sides diverged. If they agree with each other, they probably used another engine or other rules.
     Both,
-    /// There are no inputs to simulate, the setups differ, or [`bisect`](super::bisect) compared different inputs.
+    /// There are no inputs to simulate, the setups differ, or [`bisect`](super::bisect) found different inputs.
     Unknown,
 }
 

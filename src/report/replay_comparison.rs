@@ -59,7 +59,7 @@ struct ReplayComparison<'f, 'a, G: Game> {
 }
 
 impl<G: Game> ReplayComparison<'_, '_, G> {
-    /// Plays a tick from a state that both sides have in common, which is that of A's game.
+    /// Plays a tick from the common state of both sides, which is the state of A's game.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;

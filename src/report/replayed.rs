@@ -20,9 +20,9 @@ pub(super) enum Effort {
     /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
     /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged, no difference is suspected any more, and either both states are available or
-    /// that side's file has no further save. The rerun and the search together take at most two and a half times the
-    /// work of all ticks.
+    /// Plays until a side has diverged, [`Beside::suspected`] is `None`, and either the states of both sides are
+    /// available or the diverged side's file has no further save. The rerun and the search together take at most two
+    /// and a half times the work of all ticks.
     Bounded,
 }
 
@@ -145,11 +145,12 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
-    /// The first tick at which one side differs from the rerun, while the other side, which is named, has no hash and
-    /// has not diverged before. Cleared by the next hash of the other side: the two differ at that tick if it equals
-    /// the rerun, since a diverged side does not converge again. Otherwise both may have diverged in the same way.
+    /// The first tick at which one side differs from the rerun, and the other side, if the other side has no hash for
+    /// this tick and has not diverged before. The next hash of the other side decides: if it equals the rerun, the
+    /// sides differ at this tick, since a diverged side does not converge again. Otherwise both may have diverged in
+    /// the same way.
     suspected: Option<(u64, Side)>,
-    /// The states at the first different tick with both states.
+    /// The states of both sides at the first different tick for which both are available.
     states: Option<States<G::Save>>,
     /// As `states`, if the state of one side is presumed.
     presumed: Option<States<G::Save>>,
@@ -183,7 +184,7 @@ impl<G: Game> Beside<'_, '_, G> {
         self.found.simulated = Some(self.raw.tick());
         let unsettled = self.suspected.map(|(tick, _)| tick).filter(|tick| equal < Some(*tick));
         self.found.first_different = self.found.first_different.or(unsettled);
-        // The files may have more ticks than the replay has inputs.
+        // The hashes of the files may be equal at ticks after the end of the rerun.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
         self.conclude()

@@ -2,7 +2,7 @@ use core::fmt;
 
 use crate::world::Phase;
 
-/// The first stage of a tick after which two states differ that were equal before it.
+/// The stage of a tick in which two equal states became different.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {

@@ -160,7 +160,7 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // Views may have been skipped: complete ticks are determined again from the final ones.
+        // The new view may revoke complete ticks that are not final, so these are determined again.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;
@@ -200,7 +200,7 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Number of voters before this one whose rows are fresh. Voters of lower rank start ballots earlier.
+    /// Number of voters before this peer whose rows are fresh. Voters of lower rank start ballots earlier.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

@@ -33,8 +33,8 @@ pub struct Timing {
     pub fresh: u64,
     /// Time for which a proposer with promises from a quorum waits for the other voters.
     pub promises: u64,
-    /// Minimum time between the promise of a ballot and the start of another one. It grows with the rounds without a
-    /// decision.
+    /// Minimum time between the promise of a ballot and the start of another one. Each round without a decision
+    /// lengthens it.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,

@@ -107,8 +107,8 @@ impl Endpoint {
         }
     }
 
-    /// Whether a packet from a process with this peer's identity is processed, so that one of the two learns that the
-    /// identity is taken. The answers to a hello name its secret nonce, so they cannot be forged.
+    /// Whether to process a packet of another process with this peer's incarnation, so that the joining process learns
+    /// that the incarnation is taken. The answers to a hello contain its secret nonce, so they cannot be forged.
     fn concerns_identity(&self, packet: &JoinPacket) -> bool {
         match packet {
             JoinPacket::Hello { .. } => self.session().is_some(),

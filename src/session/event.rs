@@ -1,6 +1,6 @@
 use super::id::{PeerId, Tick};
 
-/// Role of this peer in the match.
+/// State of this peer in the match.
 ///
 /// ```
 /// use lockstep2d::session::Status;
@@ -131,8 +131,8 @@ pub enum Event {
         /// Hash of the other peer's state.
         theirs: u128,
     },
-    /// Another peer has issued two different inputs for one tick. The first to arrive counts. The local peer no longer
-    /// proposes a seat for it.
+    /// Another peer has issued two different inputs for one tick. The input that arrived first counts. This peer no
+    /// longer proposes that the other peer gets a seat.
     Conflict {
         /// The peer.
         peer: PeerId,

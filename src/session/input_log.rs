@@ -93,7 +93,7 @@ impl InputLog {
         if log.next > before { Added::From(before) } else { Added::Nothing }
     }
 
-    /// Drops the inputs before a tick from each span of which they are more than half of the kept inputs.
+    /// Drops the inputs before a tick, in each span where they are more than half of the kept inputs.
     pub(super) fn forget_before(&mut self, tick: Tick) {
         for log in &mut self.spans {
             let until = tick.min(log.next);

@@ -55,8 +55,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// The receiver has the chunks before `next`, and the later ones whose bit in `masks` is set. Up to `window` chunks
-    /// from `next` on may be sent.
+    /// The joining peer has the chunks before `next`, and the later ones whose bit in `masks` is set. The contact may
+    /// send up to `window` chunks from `next` on.
     Want {
         hash: u64,
         next: u32,

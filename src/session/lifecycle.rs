@@ -66,7 +66,7 @@ impl Session {
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
         }
-        // A peer removed with `Removal::Without` may return.
+        // A peer removed with `Removal::Without` may return, so the vote ends with the removal.
         let view = &self.view;
         self.wants.removals.retain(|removal| match *removal {
             Removal::Without(id) => view.voter(id).is_some(),
@@ -104,7 +104,7 @@ impl Session {
         }
     }
 
-    /// A seat that this peer requests and another one has.
+    /// A requested seat that another peer has.
     pub(crate) fn taken_seat(&self) -> Option<u8> {
         let want = self.wants.seats?;
         let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);
@@ -160,7 +160,7 @@ impl Session {
         }
     }
 
-    /// Whether a peer that has finished or left may stop answering. `known`: no other peer needs its answers.
+    /// Whether a peer that has finished or left may stop answering. `known` is whether no other peer needs its answers.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);

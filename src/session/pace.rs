@@ -5,8 +5,8 @@
 //! Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may differ.
 //! A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
 //!
-//! A voter is behind the other players, not behind the inputs: those are issued ahead of play by the input delay, and
-//! an own tick played at once would issue further ones.
+//! A voter catches up with the other players, not with the complete ticks. Inputs are issued ahead of play by the input
+//! delay: if all players played every complete tick at once, they would drive each other ahead without end.
 
 use alloc::vec::Vec;
 
@@ -34,7 +34,7 @@ pub(super) struct Pace {
     hurries: bool,
 }
 
-/// A voter that leads the slowest other player by more ticks than this waits.
+/// A voter waits if it leads the slowest other player by more than this number of ticks.
 const AHEAD_MAX: i64 = 6;
 /// Largest lateness that is made up, in ticks.
 const LATE_MAX: u64 = 3;
@@ -44,7 +44,7 @@ const CATCH_UP: Tick = 12;
 const DELAY_INTERVAL: u64 = 500_000;
 /// Ticks by which a peer without a vote stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Number of units per tick in which leads over other peers are measured.
+/// Leads over other peers are measured in units of a tick divided by this number.
 const PART: i64 = 256;
 
 impl Pace {

@@ -19,8 +19,8 @@ pub(super) struct Remote {
     pub(super) fresh: Option<u64>,
     /// Time of the last packet from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Time at which the newest row arrived that states a connection of the peer to a quorum; at first, the time at
-    /// which the peer became known.
+    /// Time at which the newest row arrived in which the peer states that it is connected to a quorum. Before such a
+    /// row, the time at which the peer became known.
     pub(super) contact: u64,
     /// Whether the peer is served without a vote.
     pub(super) attached: bool,

@@ -219,7 +219,7 @@ impl Session {
         rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
     }
 
-    /// The change that a promiser has accepted in the highest ballot. If no promiser has accepted one, a new change.
+    /// The change that promisers have accepted in the highest ballot, or a new change if they have accepted none.
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
@@ -242,7 +242,7 @@ impl Session {
             self.view.voters.iter().enumerate().filter(move |(index, _)| !has_bit(leaves, *index))
         };
         if keeps(leaves).next().is_none() {
-            // The last voter leaves: the match is over.
+            // If all voters leave, the match ends, and the proposer remains a voter.
             end = end.or(Some(cut));
             leaves &= !self.view.voter(self.me).map_or(0, bit);
         }

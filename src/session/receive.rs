@@ -97,7 +97,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // This limit does not slow down a peer that catches up: a packet carries at most 64 ticks of a span.
+        // A peer that catches up rarely reaches this limit: a packet extends each span by at most 64 ticks.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;

@@ -136,7 +136,7 @@ pub enum Request {
         /// The tick.
         tick: Tick,
     },
-    /// Copies before this tick are no longer needed.
+    /// Copies for earlier ticks are no longer needed.
     Forget {
         /// The tick.
         tick: Tick,

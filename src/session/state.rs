@@ -105,7 +105,7 @@ pub struct Session {
 pub(super) struct Clock {
     /// The latest time passed by the caller.
     pub(super) now: u64,
-    /// Running time. Of the time between two calls, at most [`Timing::step_max`](super::Timing) counts.
+    /// Running time. It advances by at most [`Timing::step_max`](super::Timing) between two calls.
     pub(super) active: u64,
 }
 
@@ -236,9 +236,9 @@ impl Session {
         self.wants.leave = true;
     }
 
-    /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before that tick. If several
-    /// requests are known when a majority decides, the largest number counts. After the decision no peer gets a seat,
-    /// and the end does not change.
+    /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before that tick; later calls
+    /// have no effect. If several requests are known when a majority decides, the largest number counts. After the
+    /// decision no peer gets a seat, and the end does not change.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }

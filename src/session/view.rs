@@ -62,12 +62,12 @@ pub(super) struct Join {
     pub(super) seats: u64,
 }
 
-/// A decided step from one view to the next.
+/// A step from one view to the next, proposed or decided.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Change {
     /// First tick that the change may affect. The ticks before it are final.
     pub(super) cut: Tick,
-    /// First tick that is not played, once decided.
+    /// First tick that is not played; `None` while no end is decided.
     pub(super) end: Option<Tick>,
     /// Whether the first tick may be played.
     pub(super) begun: bool,
@@ -101,7 +101,7 @@ pub struct View {
     pub begun: bool,
     /// Cut of the last change. The ticks before it are final.
     pub cut: Tick,
-    /// First tick that is not played, once decided.
+    /// First tick that is not played; `None` while no end is decided.
     pub end: Option<Tick>,
     /// Voter with the casting vote.
     pub tie_holder: PeerId,

@@ -237,8 +237,8 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
             let extra = if K::has_extra(batch) { extras.next() } else { None };
             let is_single = has_one_constraint(K::bodies(batch));
             let parts = BatchParts { batch, record, extra, bodies, faults };
-            // One lane takes less than half of the instructions of eight. In a small world, most batches have one
-            // constraint.
+            // One lane takes less than half as many instructions as eight lanes. In a small world, most batches have
+            // one constraint.
             if is_single { operation.apply::<Scalar<1>, N>(parts) } else { operation.apply::<L, N>(parts) }
         }
     }

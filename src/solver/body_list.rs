@@ -94,7 +94,7 @@ impl BodyList {
         self.indices[slot as usize]
     }
 
-    /// The index of a body with a joint. Adds a body that is not in this list, because joints need its rotation.
+    /// The index of a body with a joint. Adds the body if it is not in this list, because joints need its rotation.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
             self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);

@@ -1,9 +1,9 @@
 //! The two bodies of a joint that is not a hinge, while the joint is solved.
 //!
 //! A velocity change is rounded to the resolution of [`Speed`]. Over thousands of updates the roundings would add up to
-//! a force: a spring and a motor that balance each other would turn the heavier body by a unit in every sub-step. The
-//! rounding error is therefore carried over to the next change by the same joint (error feedback, as in first-order
-//! noise shaping), so that the sum of the changes in a tick is rounded once.
+//! a force: a spring and a motor that balance each other would change the spin of the heavier body by one unit in every
+//! sub-step. The rounding error is therefore carried over to the next change by the same joint (error feedback, as in
+//! first-order noise shaping), so that the sum of the changes in a tick is rounded once.
 
 use super::body::SolverBody;
 use super::limits::Faults;
@@ -70,7 +70,7 @@ impl Remainder {
         let mix = |seed: i64| seed.wrapping_mul(MULTIPLIER);
         let seed = mix(mix(centre.x.to_bits()).wrapping_add(centre.y.to_bits()));
         let seed = mix(seed.rotate_left(32).wrapping_add(body.angle().to_bits().into()));
-        // The highest bits are the most random ones; 30 bits are one unit.
+        // The highest bits are the most random ones. The 30 bits that are kept span one unit of a speed.
         let next = |round: i64| saturate(mix(seed.wrapping_add(round).rotate_left(32)) >> 34);
         Remainder { x: next(1), y: next(2), spin: next(3) }
     }

@@ -165,7 +165,7 @@ impl Colouring {
         counting_sort(nodes.len(), ranks.count(), rank_of, order, ends);
     }
 
-    /// Whether any constraint of the last order changes a body.
+    /// Whether a constraint in the last [`Self::sort`] changes the body.
     pub(super) fn holds(&self, body: u32) -> bool {
         self.used.get(body as usize).is_some_and(|&colours| colours != 0)
     }
@@ -206,7 +206,7 @@ impl Colouring {
         rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
     }
 
-    /// Index in `order` after the last such constraint.
+    /// Index in `order` after the last constraint that has this place and belongs to the thread `part`.
     fn end(&self, place: u8, part: usize) -> usize {
         self.ends.get(self.ranks.rank_of(place, part)).map_or(0, |&end| end as usize)
     }

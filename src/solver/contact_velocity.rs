@@ -1,13 +1,13 @@
 //! Warm start of contacts, body by body: one sum applies the accumulated impulses of all contacts of a body.
 //!
-//! The rows of contacts do not change within a tick. The accumulated impulses therefore cause the velocity change of
-//! the last sub-step again:
+//! The rows of contacts do not change within a tick. Applied again, the accumulated impulses therefore cause the same
+//! velocity change as in the last sub-step:
 //!
 //! ```text
 //! change = v - v_free,    v' = v_free' + change
 //! ```
 //!
-//! where `v_free` is the velocity without contacts. Joints, whose rows turn with their bodies, locked axes and
+//! where `v_free` is the velocity without contacts. Joints (whose rows turn with their bodies), locked axes and
 //! restitution also change velocities within a sub-step. Their changes are added to `v_free`, so that they are not
 //! applied again.
 
@@ -23,7 +23,7 @@ use super::limits::Faults;
 use super::pair::BodyPairW;
 use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, VelocityW, WIDTH, with_data};
 
-/// The velocity changes by contacts of the bodies that one thread integrates.
+/// The velocity changes that contacts cause to the bodies that one thread integrates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
@@ -40,8 +40,9 @@ type Groups<const N: usize> = Vec<Group<N>>;
 struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
-    /// Whether one of the bodies is shared ([`PushedBody::shared`]). The velocities of the others stay exact:
-    /// `free - v + v` does not round or saturate, because `free` and `v` are below 512 m/s.
+    /// Whether one of the bodies is shared ([`PushedBody::shared`]). [`Task::Suspend`] and [`Task::Resume`] then also
+    /// act on the other bodies, whose `free` stays exact: `free - v + v` does not round or saturate, because `free` and
+    /// `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     change: VelocityW<Ints<N>>,

@@ -11,7 +11,7 @@ use crate::threads::Member;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
-    /// Removes position errors by velocity.
+    /// Adds velocity that removes position errors.
     Bias,
     /// Removes the velocity that the bias pass has added to remove position errors.
     Relax,

@@ -8,12 +8,12 @@ use crate::math::Speed;
 pub(crate) type Faults = u64;
 
 /// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. A larger impulse of
-/// a point is clamped.
+/// a point block is clamped.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// Clamps an impulse of a point to [`STEP_MAX`] before it is applied.
+/// Clamps an impulse of a point block to [`STEP_MAX`] before it is applied.
 #[inline]
 pub(crate) fn clamp_lambda(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);

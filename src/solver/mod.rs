@@ -69,7 +69,7 @@ pub(crate) struct Solver {
     /// Working memory for the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
-    /// For each thread, the velocity changes by contacts of the bodies that the thread integrates.
+    /// For each thread, the velocity changes that contacts cause to the bodies that the thread integrates.
     contact_velocities: Vec<ContactVelocities>,
     pub(crate) results: ContactResults,
     colouring: Colouring,
@@ -128,8 +128,8 @@ impl Solver {
         self.joints.blocked_count()
     }
 
-    /// Prepares the joints in blocks, and computes the arms of all joints except hinges. Blocks take much time and
-    /// memory, so that the caller first compares [`Self::blocked_joint_count`] with the work budget.
+    /// Prepares the joints in blocks, and computes the arms of all joints except hinges. Call this only if the work
+    /// budget covers [`Self::blocked_joint_count`], because blocks take much time and memory.
     pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
         let Solver { list, joints: set, machine, faults, .. } = self;
         set.prepare_blocks();

@@ -106,7 +106,7 @@ pub(crate) struct PointBlock {
 }
 
 impl PointBlock {
-    /// The block of two levers. `mass_scale` is that of the softness.
+    /// The block of two levers, for a softness with this `mass_scale`.
     pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions, mass_scale: Unit) -> Self {
         let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();

@@ -249,7 +249,7 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s, which occurs when a bound shrinks or a pushed body comes free.
+    /// Applies an impulse of more than 512 m/s, which occurs when a bound shrinks or a body under load comes free.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, bodies: &mut BodyPair<'_>) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -261,7 +261,8 @@ impl Row {
     }
 }
 
-/// `L = p D` with the `p` of an earlier `D`. It is only an initial guess, so that clamping it is no fault.
+/// `L = p D`, where `p` was computed with an earlier `D`. The result is only an initial guess, so that clamping it is
+/// no fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)

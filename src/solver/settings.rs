@@ -69,13 +69,13 @@ pub struct SolverSettings {
     /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more sub-steps:
     /// see [`Config::for_smallest`](crate::world::Config::for_smallest).
     pub sub_steps: u32,
-    /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more.
+    /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
     /// Stiffness in Hz, 1 to 1000, of joints that have no [softness of their own](crate::solver::JointDef::softness),
     /// limited to a quarter of the sub-step rate. Doubled for the anchors of a hinge, or of a weld with rigid anchors,
-    /// between a body without any other joint and a body that is not dynamic.
+    /// if one body has no other joint and the other body is not dynamic.
     pub joint_hertz: Fx,
     /// Damping ratio, 0 to 100, of joints that have no softness of their own.
     pub joint_damping_ratio: Fx,

@@ -56,8 +56,8 @@ impl Softness {
 
     /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the
     /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod that turns at 20 rad/s about an
-    /// anchor 40 radii of gyration away, 0.5 instead of 0.6 leaves a gap of 8.4 mm instead of 6.9 mm. With 1, chains of
-    /// free bodies gain energy.
+    /// anchor 40 radii of gyration away, 0.5 instead of 0.6 leaves a gap of 8.4 mm instead of 6.9 mm. With 1 instead of
+    /// 0.6, chains of free bodies gain energy.
     pub(crate) fn stretch(&self) -> Unit {
         let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
         let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));

@@ -160,7 +160,7 @@ impl Threads {
         1
     }
 
-    /// Runs a tick of a world with a number of active bodies. The argument of `tick` is the number of parts to pass to
+    /// Runs a tick of a world with `bodies` active bodies. The argument of `tick` is the number of parts to pass to
     /// [`Self::run_team`].
     #[cfg(feature = "parallel")]
     pub(crate) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
@@ -188,7 +188,7 @@ impl Threads {
         match (parts.next(), &self.team) {
             (Some(second), Some(team)) => team.run(first, core::iter::once(second).chain(parts), work),
             (other, _) => {
-                assert!(other.is_none(), "as many parts as threads");
+                assert!(other.is_none(), "there should be at most as many parts as threads");
                 work(first, Member::ALONE)
             }
         }

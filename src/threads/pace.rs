@@ -41,7 +41,7 @@ impl Pace {
         if self.until_trial == 0 { self.faster.other() } else { self.faster }
     }
 
-    /// Records the time of a tick with a number of active bodies.
+    /// Records the time of a tick with `bodies` active bodies.
     pub(super) fn record(&mut self, mode: Mode, time: Duration, bodies: usize) {
         let cost = time.as_nanos() * 1024 / (bodies as u128).max(1);
         let cost = u64::try_from(cost).unwrap_or(u64::MAX);

@@ -62,7 +62,7 @@ impl Team {
         self.pool.current_num_threads() + 1
     }
 
-    /// Runs a tick of a world with a number of active bodies. All threads share it, unless [`Pace`] chooses the calling
+    /// Runs a tick of a world with `bodies` active bodies. All threads share it, unless [`Pace`] chooses the calling
     /// thread or another tick uses the team.
     pub(super) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         let mut turn = match self.turn.try_lock() {

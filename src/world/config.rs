@@ -66,7 +66,8 @@ pub struct Config {
     pub joint_limit: u32,
     /// Largest number of pairs of shapes in a tick, at most 2^20: see
     /// [`World::pair_count`](crate::world::World::pair_count). If there are more, the pairs in the largest slots are
-    /// left out, and the tick counts as a fault. The limit bounds time and memory for untrusted worlds.
+    /// left out, and the tick counts as a fault. The limit bounds time and memory of a tick for untrusted worlds. It
+    /// does not limit pairs of sleeping bodies.
     pub pair_limit: u32,
 }
 

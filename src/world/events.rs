@@ -222,14 +222,14 @@ pub struct Events {
     /// Bodies that the tick moved or put to sleep, in slot order.
     pub moved: Vec<MoveEvent>,
     /// Pairs of solid shapes that began to touch: they were within [`super::Config::touching_distance`] at the start of
-    /// the tick, or pushed each other in the tick. One of the two shapes has to enable contact events. Sorted by shape
-    /// A, then by shape B.
+    /// the tick, or had a normal impulse in the tick. One of the two shapes has to enable contact events. Sorted by
+    /// shape A, then by shape B.
     pub contact_begin: Vec<ContactEvent>,
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended.
     /// Sorted like `contact_begin`.
     pub contact_end: Vec<ContactEvent>,
-    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. One of the two shapes
-    /// has to enable hit events. Sorted like `contact_begin`.
+    /// Pairs that had a normal impulse after an approach at [`super::Config::hit_speed`] or faster. One of the two
+    /// shapes has to enable hit events. Sorted like `contact_begin`.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,

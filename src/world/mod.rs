@@ -203,9 +203,9 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes with overlapping fat boxes that may collide, or in which a sensor detects the other
-    /// shape. At least one of the two bodies must be dynamic and awake, or kinematic and not at rest for a whole tick.
-    /// The next tick adds the pairs of new and moved shapes.
+    /// Number of pairs of shapes with overlapping fat boxes. The shapes may collide, or one is a sensor that detects
+    /// the other. At least one of the two bodies is dynamic and awake, or kinematic and not yet at rest for a whole
+    /// tick. The next tick adds the pairs of new and moved shapes.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()

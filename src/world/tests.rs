@@ -98,7 +98,7 @@ impl Near {
     }
 }
 
-/// Use `valgrind --tool=callgrind` to count the instructions of both functions of [`Near`].
+/// Use `valgrind --tool=callgrind` to count the instructions of `with_reject_and_axis` and of `without`.
 #[test]
 fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let mut world = hundred_polygons();

@@ -141,7 +141,7 @@ fn what_cannot_be_recorded_or_verified_is_found() {
     assert!(matches!(found(&failure), (Variant::Recorded, Fault::Verdict(Verdict::LimitExceeded { .. }))));
 }
 
-/// The reference run exceeds it, also if nothing is recorded.
+/// The reference run exceeds the limit, even if nothing is recorded.
 #[test]
 fn a_limit_that_is_exceeded_is_not_called_a_fault_of_the_recording() {
     let options = CheckOptions::default().only(&[]);

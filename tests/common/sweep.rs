@@ -14,7 +14,7 @@ pub fn size<T>(full: T, sampled: T) -> T {
 }
 
 /// All cases in the long run; otherwise the first, every `stride`th after it, and the last. A large sample of all
-/// combinations of parameters contains every value if the stride has no common divisor with any number of values.
+/// combinations of parameters contains every value if the stride is coprime to the number of values of each parameter.
 pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     let cases: Vec<T> = cases.into_iter().collect();
     let (last, stride) = (cases.len().saturating_sub(1), size(1, stride));

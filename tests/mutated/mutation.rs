@@ -85,7 +85,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // The place is the beginning of a part, where lengths are, or any other.
+            // The place is the beginning of a part, where lengths are, or a random place.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);

@@ -366,7 +366,7 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     // A session has 64 seats, of which the game uses four.
     assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
-    // The inputs are empty, as a loop over no seats builds them.
+    // A game that makes an input for each seat of the peer passes none.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
 }
 

@@ -337,7 +337,7 @@ fn a_command_sets_the_wind() {
     assert!(!world.body(body).expect("valid").is_asleep());
 }
 
-/// The area of a moving body wakes a sleeping one when it reaches it.
+/// The area of a moving body wakes a sleeping body when the area reaches it.
 #[test]
 fn a_moving_magnet_wakes_a_box_that_it_reaches() {
     let mut world = world(fx!(-10));
@@ -387,7 +387,7 @@ fn areas_without_an_inside_or_out_of_range_are_refused() {
         assert_eq!((what, value), expected);
         assert!(!(min..=max).contains(&value), "{error}");
     }
-    // An area does not exceed the speed limit.
+    // An area accelerates no body beyond the speed limit.
     let strongest = Area::new().force((fx!(1048576), fx!(0))).acceleration((fx!(10000), fx!(0)));
     world.add_shape(body, &square(fx!(50)).area(strongest)).expect("valid");
     let leaf = spawn(&mut world, square(fx!(0.3)).density(fx!(0.001)), (fx!(-40), fx!(0)));

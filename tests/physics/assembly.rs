@@ -167,7 +167,7 @@ impl Case {
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
-                        // The length of the first link downwards is the number of bodies in a row.
+                        // The first link downwards joins indices that differ by the number of bodies in a row.
                         let w = links.iter().find(|(a, b)| b - a > 1).map_or(2, |(a, b)| b - a);
                         let w = if links.contains(&(0, 2)) && w == 2 { 2 } else { w };
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))

@@ -82,7 +82,7 @@ fn a_ball_inside_a_block_is_pushed_out_not_through() {
     assert!(balls[2].x > fx!(3.24), "expected the ball beyond the right side, at {:?}", balls[2]);
     assert!(
         balls[3].y > fx!(1.24),
-        "expected the ball from just above the middle above the top, at {:?}",
+        "expected the ball that starts just above the middle to leave through the top, at {:?}",
         balls[3]
     );
 }

@@ -321,7 +321,7 @@ fn weights_on_a_rope_accelerate_as_theory_says() {
 #[test]
 fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let mut world = world(fx!(-10));
-    // Half the mass is in balance.
+    // At a ratio of 2, 3 kg balance 6 kg.
     let (weights, rope) = atwood(&mut world, [fx!(3), fx!(6)], fx!(2));
     run(&mut world, 600);
     for body in weights {

@@ -88,8 +88,8 @@ fn colliding_balls_keep_their_angular_momentum() {
     );
 }
 
-/// A bar falls flat onto a ledge below one half of it. The impulse points upwards, so the bar moves sideways at most as
-/// fast as in Box2D.
+/// A bar falls flat onto a ledge below one half of it. The impulse points upwards, so the bar hardly moves sideways: at
+/// most as fast as in Box2D.
 #[test]
 fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     let cases = [60u32, 240].into_iter().flat_map(|rate| {

@@ -58,8 +58,8 @@ fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     assert!(depths[8] <= fx!(0.0025) && depths[14] <= fx!(0.006) && depths[15] <= fx!(0.01), "{depths:?} m");
 }
 
-/// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. More points
-/// would be if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
+/// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. The share
+/// would be larger if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
 #[test]
 fn ragdolls_that_rain_hardly_sink_into_each_other() {
     let (mut deep, mut count) = (0, 0);

@@ -35,8 +35,8 @@ fn floor(tiles: bool, slope: Angle, world: &mut World) {
     }
 }
 
-/// The shape starts up to 5 mm deep in a floor, as bodies rest, or up to 0.3 mm above it. The cast passes seams, and
-/// stops at a ledge of 1 cm.
+/// The shape starts up to 5 mm deep in a floor, like a resting body, or up to 0.3 mm above it. The cast passes seams,
+/// and stops at a ledge of 1 cm.
 #[test]
 fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     let mut rng = Rng::new(1);

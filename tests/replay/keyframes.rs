@@ -29,8 +29,8 @@ fn keyframes_of_a_file_spare_the_way() {
         assert_eq!((timeline.played(), timeline.tick()), (400, tick));
         assert!((360..440).contains(&(timeline.simulated() - before)), "expected all ticks and the way back");
     }
-    // Keyframes are 40 ticks apart in the file. A requested interval is rounded up to a multiple of that, and only the
-    // keyframes at its multiples are used.
+    // Keyframes are 40 ticks apart in the file. A requested interval is rounded up to a multiple of 40, and only the
+    // keyframes at multiples of the rounded interval are used.
     for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {
         let mut timeline = open::<Sandbox>(&file, interval, 64 << 20);
         timeline.use_keyframes(&bytes).unwrap();

@@ -1,4 +1,4 @@
-//! The recorder returns its bytes while the game runs and steps the game with inputs as a replay encodes them. It
+//! A recording returns its bytes while the game runs, and steps the game with the inputs that its replay decodes to. It
 //! writes nothing that a verifier would refuse.
 
 use lockstep2d::hash::StateHash;

@@ -1,4 +1,5 @@
-//! A seek finds the state of a playback without seeks. It simulates at most two intervals, within a memory budget.
+//! A seek leads to the state that a playback without seeks has. In a part that has been played, a seek simulates at
+//! most two intervals, within a memory budget.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;

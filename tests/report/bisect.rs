@@ -262,7 +262,7 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     });
 }
 
-/// The inputs may differ in an earlier tick.
+/// The inputs may differ in an earlier tick than the states.
 #[test]
 fn replays_whose_states_meet_again_part_where_every_tick_says_so() {
     let record = |kicks: &[(u64, i32)]| {

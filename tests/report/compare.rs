@@ -75,8 +75,8 @@ fn state_after(seed: u64, flip: Flip) -> StateHash {
     peer.game.state_hash()
 }
 
-/// Compares `count` faulty peers, and skips flips that are no multiple of `stride`. At most one in twenty may be
-/// explained by another flip with the same effect. Returns the number of flips without a difference.
+/// Draws random flips, and tries every `stride`th of them until `count` flips have made a difference. At most one in
+/// twenty may be explained by another flip with the same effect. Returns the number of flips without a difference.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;
@@ -213,8 +213,8 @@ fn replays_tell_who_diverged_between_which_checkpoints() {
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));
 }
 
-/// As for a game that uses floats or a random order, or for the wrong build of the tool: both sides diverge from the
-/// rerun, in the same way at first.
+/// Both sides diverge from the rerun, in the same way at first. This happens if the game uses floats or a random order,
+/// or with the wrong build of the tool.
 #[test]
 fn reports_of_rules_that_this_program_cannot_reproduce_give_the_tick_and_the_field() {
     let flip = |tick, body| Flip { tick, when: When::After, body, field: BodyField::VelocityY, bit: 12 };

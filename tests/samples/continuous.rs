@@ -164,7 +164,7 @@ fn slivers_stay_above() {
     assert!(stage.body(sliver).is_asleep());
 }
 
-/// Samples "Speculative Ghost" and "Pixel Imperfect". A body passes a corner at millimetres or centimetres.
+/// Samples "Speculative Ghost" and "Pixel Imperfect". A body passes a corner millimetres or centimetres away.
 #[test]
 fn what_passes_by_is_not_touched() {
     let mut stage = Stage::new();

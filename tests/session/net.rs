@@ -19,7 +19,7 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks, of which the second one is after the first two seconds. Tests reset it to 0.
+    /// Longest time between two ticks, measured after the first two seconds. Tests reset it to 0.
     pub(super) stall: Us,
     pub(super) last_tick: Us,
 }

@@ -41,7 +41,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// Delay in ticks: the latency plus one tick. The calls of the session add up to a millisecond to the latency.
+/// Delay in ticks: the latency plus one tick. A packet may wait a millisecond for the next call of the session.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }

@@ -64,8 +64,8 @@ pub(crate) struct Peer {
     pub(crate) lost_seats: u32,
     /// Whether the game shows a menu and does not advance.
     pub(crate) in_menu: bool,
-    /// Peers that the session reported to wait for. The flag tells whether the session hears the peer, also through
-    /// others.
+    /// Peers for which the session reported that it waits. The flag tells whether the session hears the peer, also
+    /// through others.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,

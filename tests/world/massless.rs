@@ -122,7 +122,7 @@ fn a_body_gains_and_loses_its_mass_with_its_shapes() {
     assert_eq!(world.body(body).expect("there").velocity(), falling);
 }
 
-/// The bodies are awake or asleep when contacts and joints cease or begin to act.
+/// Contacts and joints cease and begin to act while bodies are awake, and while they sleep.
 #[test]
 fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     let mut world = World::default();

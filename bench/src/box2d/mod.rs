@@ -217,8 +217,8 @@ impl Engine for Box2d {
 /// Replaces Box2D's log, whose messages would mix with the results and distort the times.
 unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
-/// Whether a contact of a body is counted. Both bodies report a contact of two non-static bodies, which counts for body
-/// A.
+/// Whether a contact that a body reports is counted. Two non-static bodies both report their contact, and only the
+/// report of body A counts.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
     // SAFETY: the shapes of a contact of the last step exist.
     unsafe {

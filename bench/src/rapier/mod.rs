@@ -21,10 +21,10 @@ pub struct Rapier {
     config: Config,
     threads: usize,
     bodies: Slots<RigidBodyHandle>,
-    /// Number of links that are not colliders, because each chain is one collider: all links but the first of each
-    /// chain.
+    /// Number of chain links minus the number of chains. Each chain is a single collider, but its links count as
+    /// shapes.
     extra_links: usize,
-    /// Bodies to put to sleep after the first step. New contacts in that step wake them.
+    /// Bodies to put to sleep after the first step. If they slept earlier, new contacts in that step would wake them.
     to_sleep: Vec<RigidBodyHandle>,
     saves: [Vec<u8>; SAVES],
 }

@@ -42,7 +42,7 @@ pub(crate) struct Struct {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parameter {
     pub(crate) name: &'static str,
-    /// Parts before, of and after the type in C: `const `, `ls2d_vec2`, ` *`.
+    /// Type in C: text before the base type, base type, text after it, such as `const `, `ls2d_vec2`, ` *`.
     pub(crate) kind: [&'static str; 3],
 }
 
@@ -176,8 +176,8 @@ macro_rules! records {
     };
 }
 
-/// Defines functions. A body without a result type returns `Outcome`, and its function a status code. Other bodies
-/// return the function's value.
+/// Defines functions. If no result type is given, the body returns an `Outcome`, which the function converts to a
+/// status code. Otherwise the body returns the function's value.
 macro_rules! api {
     ($($(#[doc = $doc:literal])+ fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $value:ty)? $body:block)+) => {
         $($crate::describe::api!(@define [$($doc)+] $name [$($argument: $type),*] [$($value)?] $body);)+

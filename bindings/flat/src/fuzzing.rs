@@ -201,7 +201,7 @@ impl Drawn for u32 {
             return caller.handle(name);
         }
         match byte {
-            // Every tick takes time.
+            // Few ticks per call, because every tick takes time.
             _ if name == "ticks" => u32::from(byte % 8),
             0..16 => u32::try_from(caller.word() >> 32).unwrap_or(0),
             _ => u32::from(byte % 16),

@@ -18,8 +18,8 @@ const OPENING: &str = "\
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
  * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER,
- * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write that number in
- * both cases; ls2d_match_next_packet only if the buffer for the address is long enough.
+ * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write the number needed
+ * even then. ls2d_match_next_packet writes the size of the packet only if the buffer for the address is long enough.
  *
  * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
  *
@@ -37,11 +37,11 @@ extern \"C\" {
 
 /* Result of a function: one of the LS2D_ codes below. */
 typedef int32_t ls2d_status;
-/* An object. */
+/* Handle of an object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | has no operands
- * that are floats, so that a float, which would be truncated, is an error of the compiler. */
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | refuses floats,
+ * which the conversion to int64_t would truncate without an error. */
 #define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / ((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */

@@ -40,7 +40,7 @@ statuses! {
     Size = 6, "LS2D_SIZE";
     /// An argument is out of its range, or the call is not possible at this time.
     Value = 7, "LS2D_VALUE";
-    /// The buffer is too short. The number of items needed was written, if the function writes it.
+    /// The buffer is too short. The number of items needed was written, if the function has a pointer for it.
     Buffer = 8, "LS2D_BUFFER";
     /// A text is invalid, for example not UTF-8.
     Text = 9, "LS2D_TEXT";

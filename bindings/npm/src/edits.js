@@ -21,7 +21,7 @@ export class Edits extends Handle {
     spawnEach(options, poses) {
         const placed = array(poses, "poses").map((pose, index) => {
             const { position, angle = 0 } = onlyKnown(pose, ["position", "angle"], `pose ${index}`);
-            // `write` skips undefined fields.
+            // `write` would skip an undefined position.
             return position === undefined ? fail(`pose ${index} has no position`) : { position, angle };
         });
         const size = sizeOf("pose");

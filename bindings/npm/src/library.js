@@ -99,7 +99,7 @@ export function scratch(size) {
     return reserve(SMALL + size) + SMALL;
 }
 
-/** Address of 64 bytes that are not part of `scratch`, so that getters of arguments may calculate. */
+/** Address of 64 bytes that `scratch` never returns, for mathematics: getters of arguments may call it. */
 export const small = () => reserve(SMALL);
 
 /** Runs `convert`, which reads arguments. Getters that reuse the scratch memory are an error. */

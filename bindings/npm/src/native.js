@@ -44,7 +44,7 @@ export function decodeNativeState(bytes) {
     const hash = hashOf(world.hash());
     if (!hash.every((byte, index) => byte === bytes[index])) {
         world.dispose();
-        throw new Lockstep2dError("SNAPSHOT", "the hash of the state is another one");
+        throw new Lockstep2dError("SNAPSHOT", "the state does not have the hash that the bytes begin with");
     }
     return world;
 }

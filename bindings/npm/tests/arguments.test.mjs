@@ -5,7 +5,7 @@ import { L } from "./common.mjs";
 
 const world = () => new L.World({ gravity: [0, -10] });
 
-/** Values that are no integers of 32 bits without sign. */
+/** Values that are not unsigned integers of 32 bits. */
 const NO_COUNTS = [-1, 0.5, 16.67, "2", "x", NaN, null, {}, 2 ** 32, true];
 
 test("a number of ticks and a bound are integers", () => {

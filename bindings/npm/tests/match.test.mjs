@@ -210,7 +210,7 @@ test("only a finished match has ended, also once it is closed", () => {
     });
     host.match.endAt(300);
     net.run(16_000);
-    // Some have played all the ticks that they have heard of.
+    // Some spectators have played all ticks that they know to be final.
     assert.ok(spectators.some(({ driver, match }) => driver.tick === match.ticks().final));
     assert.deepEqual([host.match.status, host.driver.tick, host.driver.ended], ["closed", 300, true]);
     assert.deepEqual(spectators.map(({ driver, match }) => [match.status, driver.ended]), spectators.map(() => ["closed", false]));

@@ -202,7 +202,7 @@ test("a driver is at the tick of its game after the game has failed", () => {
         };
         assert.ok(!arrives(driver, game, failing), name);
         [before + 1, before + 5, before + 70].forEach((tick) => arrives(driver, game, tick));
-        // A saved state from before the failure leads on.
+        // Tick 10 can be reached from a state that was saved before the failure.
         assert.ok(arrives(driver, game, 10), name);
     }
 });

@@ -45,7 +45,7 @@ impl<G: LockstepGame> Plugin for LockstepDiagnosticsPlugin<G> {
     }
 }
 
-/// Frames between two measurements of a save, which encode it.
+/// Frames between two measurements of a save. Each of them encodes a save.
 const SAVE_INTERVAL: u32 = 64;
 
 fn measure<G: LockstepGame>(

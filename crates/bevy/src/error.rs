@@ -47,7 +47,7 @@ impl fmt::Display for LockstepError {
             LockstepError::Replay(verdict) => write!(f, "the replay cannot be played: {verdict}"),
             LockstepError::Seek(error) => write!(f, "the replay cannot be played: {error}"),
             LockstepError::SyncTest { tick, first, again } => {
-                write!(f, "after {tick} ticks the state was {first} first and is {again} after a rollback")
+                write!(f, "the state hash after {tick} ticks was {first}, and is {again} after a rollback")
             }
             LockstepError::Unsupported(what) => write!(f, "the driver cannot {what}"),
         }

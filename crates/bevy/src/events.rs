@@ -129,7 +129,8 @@ pub struct PredictedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound.
+/// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound. It is sent more than 16 ticks after
+/// the event, because the event may occur again until then.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
     /// Number of ticks played, including that of the event.

@@ -102,10 +102,10 @@ impl fmt::Display for LevelError {
 
 impl core::error::Error for LevelError {}
 
-/// A scratch world finds the ids of the bodies. The game will assign the same ids.
+/// Turns entities with a [`SpawnBody`] or [`SpawnJoint`] into commands for the setup of a game.
 ///
-/// Removes the components, and inserts a [`BodyView`] into the entities of bodies. Bodies and joints are created in the
-/// order of the indices of their entities. For a match, build the level on one machine and send the commands to the
+/// Removes these components, and inserts a [`BodyView`] into the entities of bodies. Bodies and joints are created in
+/// the order of the indices of their entities. For a match, build the level on one machine and send the commands to the
 /// others, because entities may differ between machines.
 ///
 /// # Errors

@@ -124,7 +124,7 @@ fn views_at<'a>(
     entities.into_iter()
 }
 
-/// The pointer that holds a body, in the view of a camera.
+/// The pointer that holds a body, and the camera that it points through.
 #[derive(Resource, Default)]
 struct HoldingPointer(Option<RayId>);
 

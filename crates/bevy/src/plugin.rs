@@ -165,7 +165,7 @@ pub fn has_stepped(status: Res<LockstepStatus>) -> bool {
     status.stepped > 0
 }
 
-/// Run condition: a rollback changed the past in this frame.
+/// Run condition: there was a rollback in this frame.
 pub fn has_rolled_back(status: Res<LockstepStatus>) -> bool {
     status.rolled_back > 0
 }

@@ -90,7 +90,7 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
-        // A game may not step its world in every tick, for example in a pause between rounds.
+        // A game need not step its world in every tick, for example in a pause between rounds.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {

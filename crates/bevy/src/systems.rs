@@ -137,8 +137,8 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was placed elsewhere. Then its way is longer than `limit` metres, and longer than twice the distance
-/// that its velocity covers.
+/// Whether a body was placed elsewhere: its way in a tick is longer than `limit` metres, and longer than twice the
+/// distance that its velocity covers.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;

@@ -53,7 +53,7 @@ impl Console<'_> {
 /// JSON on one line, with [misleading](is_misleading) characters escaped.
 pub(crate) fn json_text(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value).expect("strings and numbers have a JSON form");
-    // They occur only in strings.
+    // Misleading characters occur only in strings.
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         if is_misleading(character) {

@@ -211,14 +211,14 @@ impl fmt::Display for CommandError {
                 "there is no body {id:?} in this state: a body is given by its number, its handle or its name, such as \
                  12, 12v1 or ball"
             ),
-            CommandError::NothingThere { what } => write!(f, "there is no {what} in this state"),
+            CommandError::NothingThere { what } => write!(f, "there is no {what}"),
             CommandError::NoPictures => {
                 write!(f, "this game exposes no world (`Game::world`), so it cannot be drawn")
             }
             CommandError::NoFormat => write!(
                 f,
-                "no format given: use --svg, --png, --gif, --apng, --json or --plot, or -o with a name that ends in \
-                 one"
+                "no format given: use --svg, --png, --gif, --apng, --json or --plot, or -o with an extension such as \
+                 .svg"
             ),
             CommandError::Extension { path, option, other } => {
                 write!(f, "{option} does not write {}: use {other}, or another name", Shown(path))
@@ -245,7 +245,7 @@ impl fmt::Display for CommandError {
                 write!(f, "{required} signatures are required, but the keys have {names} names")
             }
             CommandError::InputSignatures => {
-                write!(f, "the standard input has no signature file beside it: name the replay")
+                write!(f, "the standard input has no signature file beside it: pass the path of the replay")
             }
             CommandError::Compare(error) => write!(f, "cannot compare: {error}"),
         }

@@ -61,7 +61,7 @@ pub(crate) struct OutputFile {
 
 impl OutputFile {
     /// Creates the temporary file of a target. Call it before long computations, so that errors are reported early.
-    /// Fails if the file exists without `--force`, or if another process writes the target.
+    /// Fails if the target exists and `--force` is not set, or if another process writes the target.
     ///
     /// A target that is not a regular file, such as `/dev/stdout`, is written directly.
     pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
@@ -103,8 +103,8 @@ impl OutputFile {
         self.file.write_all(bytes).map_err(CommandError::write(&self.name))
     }
 
-    /// Makes the file appear under its name, after its bytes have reached the disk. Fails if another program has
-    /// created the target meanwhile.
+    /// Makes the file appear under its name, after its bytes have reached the disk. Without `--force`, fails if another
+    /// program has created the target meanwhile.
     pub(crate) fn publish(mut self) -> Result<(), CommandError> {
         let failed = CommandError::write(&self.name);
         let Some(temporary) = &self.temporary else {

@@ -53,7 +53,7 @@ impl Camera {
     /// Converts a world point to screen coordinates.
     #[must_use]
     pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
-        // The difference is computed first, because coordinates need more than the 24 bits of an `f32`.
+        // The difference is computed before the conversion to `f32`, whose 24 bits are too few for coordinates.
         let x = difference(point.x, self.centre.x) * self.scale;
         let y = difference(point.y, self.centre.y) * self.scale;
         [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]

@@ -19,7 +19,7 @@ pub(super) const FREE_FALL: Scene =
 pub(super) const BOUNCING_BALL: Scene = Scene::new(
     "bouncing_ball",
     900,
-    "a ball of restitution 0.8 dropped from 10 m: no rebound is higher",
+    "a ball of restitution 0.8 dropped from 10 m: no rebound is higher than the one before",
     |_| {
         build(Config::default(), |scene| {
             floor(scene, fx!(20))?;

@@ -18,7 +18,7 @@ const TURNING: Fx = fx!(0.436332312999);
 pub(super) const SPINNER: Scene = Scene::new(
     "spinner",
     500,
-    "a rotor of 40 m stirs 6076 bodies in a ring that overlap at the start",
+    "a rotor of 40 m stirs 6076 bodies in a ring; the bodies overlap at the start",
     |_| {
         build(Config::default(), |scene| {
             // The points of the one-sided chain are in clockwise order, so that it is solid from the inside.

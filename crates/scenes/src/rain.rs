@@ -22,7 +22,7 @@ const INTERVAL: u64 = 8;
 
 pub(super) const RAIN: Scene = Scene {
     name: "rain",
-    about: "every 8 ticks 25 ragdolls are added, and from the 41st time on as many are removed",
+    about: "every 8 ticks 25 ragdolls are added, and from the 41st time on as many old ones are removed",
     ticks: 1000,
     golden_ticks: 60,
     setup: |_| {
@@ -47,7 +47,7 @@ pub(super) const RAIN: Scene = Scene {
     },
 };
 
-/// Numbers of the ragdolls of a column. On every floor, one ragdoll has each number.
+/// Numbers of the ragdolls of a column. Each number belongs to one ragdoll on every floor.
 const fn ragdolls(column: u32) -> core::ops::Range<u32> {
     column * GROUP..(column + 1) * GROUP
 }

@@ -64,7 +64,7 @@ fn lift_at(tick: u64) -> Vec2<Fx> {
     Vec2::new(fx!(17.6), rise - fx!(0.2))
 }
 
-/// Height in metres at which the leg bears the weight: that of the centre of mass above the ground.
+/// Height of the centre of mass above the ground, in metres, at which the leg bears the weight.
 const RIDE_HEIGHT: Fx = fx!(0.9);
 /// Maximum length of the leg in metres. A longer leg would exert no force.
 const LEG_LENGTH: Fx = fx!(1.1);

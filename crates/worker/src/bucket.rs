@@ -33,8 +33,8 @@ impl Bucket {
         Ok(Bucket { url: url.clone(), store: PrefixStore::new(builder.build().map_err(&failed)?, folder) })
     }
 
-    /// The replays in the folder `name`. If there are none, the object of this name. If `name` is empty, all replays of
-    /// the bucket.
+    /// Names of the replays in the folder `name`, or in the whole bucket if `name` is empty. If there are none,
+    /// `name` itself, if it is an object.
     pub(crate) async fn replays(&self, name: &str) -> Result<Names<'_>, WorkerError> {
         let path = self.path(name)?;
         let failed = WorkerError::bucket(&self.url);

@@ -1,7 +1,7 @@
 //! Targets whose input is a file or packets.
 //!
 //! The first byte of an input selects how the other bytes make a file: they are its bytes, or they describe changes of
-//! an original file. The checksums are repaired or not.
+//! an original file. The first byte also selects whether the checksums are repaired.
 
 pub mod replay;
 pub mod report;

@@ -91,7 +91,7 @@ impl Rules {
     }
 
     /// Sets whether the player of a seat is present. A player who leaves loses its body, which is not a fall. A player
-    /// who joins gets a body in the next round. After practice, that round begins at once.
+    /// who joins gets a body in the next round, which begins at once if the current round is practice.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;

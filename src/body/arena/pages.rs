@@ -33,7 +33,7 @@ struct Vacancies {
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// Digest of the vacancies, then of each page. Reading them does not visit the pages.
+    /// Digest of the vacancies, then of each page, so that reading the digests does not visit the pages.
     digests: Vec<StateHash>,
 }
 
@@ -130,8 +130,8 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Number of restores and calls of [`Arena::note_change`]. A restore does not set the fields that every step
-    /// changes. The caller has to set them.
+    /// Counter for caches of the fields that every step changes. It grows with each restore, after which the caller of
+    /// [`Arena::restore`] sets those fields, and with each call of [`Arena::note_change`].
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }

@@ -150,7 +150,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 }
                 _ => {}
             }
-            // Few moved boxes, which the tree marks, or many.
+            // Even rounds move few boxes, which the tree marks, and odd rounds many.
             if rng.below(if round % 2 == 0 { 40 } else { 4 }) == 0 {
                 moved.extend([rng.below(150), rng.below(150)]);
                 moved.push(moved[0]);

@@ -221,7 +221,7 @@ impl Tree {
     }
 
     /// The sibling with which a new leaf adds the least perimeter to the new parent and the ancestors. The search
-    /// descends to the child with the smaller lower bound of this cost. It ends if the bound exceeds the best cost, and
+    /// descends to the child with the smaller lower bound of this cost. It ends if the bound exceeds the best cost and
     /// the best node is low enough to have a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);

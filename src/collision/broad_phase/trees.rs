@@ -75,7 +75,7 @@ impl Trees {
         self.fixed.refill(those(true));
     }
 
-    /// Finds each overlapping pair once, without pairs of fixed bodies and most pairs within one collision class.
+    /// Finds each overlapping pair once. Leaves out pairs of fixed bodies, and most pairs within one collision class.
     pub(super) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet(|_| true, found);
     }

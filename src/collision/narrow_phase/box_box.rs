@@ -1,4 +1,4 @@
-//! Box against box, [`WIDTH`] pairs at a time with SIMD. Manifolds with points equal those of
+//! Box against box, [`WIDTH`] pairs at a time with SIMD. A manifold that has points equals that of
 //! [`hull_hull`](super::hull_hull) bit for bit. Pairs with the incident edge beside the reference face, or with two
 //! corners as nearest features, are left to the scalar path.
 

@@ -133,7 +133,7 @@ pub(in crate::collision) fn are_apart(
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// Whether `b` is beyond an end of `a`, if `a` is two-sided. Such an outline has no faces at its ends.
+/// Whether `a` is a line and `b` is beyond one of its ends, at which a line has no faces.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();

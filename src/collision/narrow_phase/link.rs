@@ -1,7 +1,7 @@
 //! A chain link against a circle or a convex outline.
 //!
-//! A single link would push a shape that slides over its end back or up: a ghost collision. Its neighbours decide which
-//! normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
+//! Without its neighbours, the end of a link would push back or up a shape that slides over it: a ghost collision. The
+//! neighbours decide which normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
 //!
 //! ```text
 //! convex vertex    normals between the normals of the two links; each link has the half nearer to its own normal
@@ -23,8 +23,8 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, convert, saturate};
 /// Sine of the angle (0.6 degrees) below which convex vertices count as flat.
 const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
 
-/// Sine of the largest angle at which a face normal counts as the link's own. A larger value would push rounded boxes
-/// that slide along the chain back at every vertex.
+/// Sine of the largest angle at which a face normal counts as the link's own. With a larger value, every vertex would
+/// push back the rounded boxes that slide along the chain.
 const PARALLEL: Unit = Unit::lit("0.0002");
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ impl Facing {
         let (p, q) = clipped_to_window(link.a, link.b)?;
         let direction = link.directions.own?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
-            // A chain that reverses exactly ends there.
+            // If the neighbour runs in exactly the opposite direction, the chain ends here.
             Some(other) if other != -direction => {
                 LinkEnd::Joined { direction: other, turn: turn(other, direction) }
             }
@@ -205,7 +205,7 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // Beyond the end of the link, its line only limits the approach, so only speculative points stay.
+                // A point beyond the end of the link stays only if it is speculative, to limit the approach.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }

@@ -1,5 +1,5 @@
-//! Segments as long as the world are clipped in 64 bits to a window around the other shape, and become two-sided
-//! outlines in 32-bit coordinates relative to its centre.
+//! Segments may be as long as the world. The part in a window around the other shape is clipped in 64 bits. It becomes
+//! an outline of two opposite faces, in 32-bit coordinates relative to the centre of the other shape.
 
 use crate::collision::shape::posed::Hull;
 use crate::fx;

@@ -138,7 +138,7 @@ fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     }
 }
 
-/// Consider the line through `s` that is perpendicular to `s p`. Whether the origin and `p` are on the same side of it.
+/// Whether the origin and `p` are on the same side of the line through `s` that is perpendicular to `s p`.
 fn projects_inside(s: Vertex, p: Vertex) -> bool {
     dot(p.w - s.w, -s.w) > 0
 }
@@ -153,7 +153,7 @@ fn on_edge(p: Vertex, q: Vertex, to_origin: Vec2<Grid>) -> Axis {
     let fraction = Fraction::ratio(-dot(p.w, edge), dot(edge, edge));
     let point_a = p.a + fraction.of(q.a - p.a);
     let point_b = p.b + fraction.of(q.b - p.b);
-    // From the exact edge direction, because the difference of the points is rounded.
+    // The normal follows from the exact edge direction, because the difference of the points is rounded.
     let normal = direction(-to_origin).unwrap_or(Vec2::Y);
     Axis { separation: length(point_b - point_a), normal, point_a, point_b }
 }

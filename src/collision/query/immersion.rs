@@ -172,7 +172,8 @@ mod tests {
         assert_eq!(above.extent(), None);
     }
 
-    /// Area under the surface of a disc whose centre is `h` above it: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
+    /// If the centre of a disc is `h` above the surface of the sea, the part of the disc below the surface has the area
+    /// `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
     #[test]
     fn a_disc_is_cut_as_theory_says() {
         let sea = Ring::of(&square(fx!(50)), &pose(fx!(0), fx!(-50), Angle::ZERO));

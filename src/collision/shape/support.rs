@@ -221,7 +221,7 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
 /// Distance of a point from a line. `cross` is the cross product with a vector along the line, and `scaled_length` the
 /// length of that vector from [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // Above 2^97 the height exceeds any distance of interest, and losing a few bits is harmless.
+    // For a cross product above 2^97 the height exceeds any distance of interest, and may lose a few bits.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {

@@ -216,8 +216,8 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// Checkpoints on the way are compared.
     ///
     /// # Errors
-    /// [`SeekError`]. If playing fails, the game stays at the last tick played, otherwise at the current tick. Earlier
-    /// ticks remain reachable.
+    /// [`SeekError`]. If playing a tick fails, the timeline stays at the last tick played, and earlier ticks remain
+    /// reachable. After any other error it does not move.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });

@@ -26,14 +26,14 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Largest number of points of a contact. Points beyond this number are stale.
+    /// Largest number of points of a contact in the batch. Points beyond this number are stale.
     pub(super) count: usize,
     /// Whether the batch has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
     /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]). Iterations do
     /// so as well, if [`super::Constants::unchecked`] holds.
     pub(super) unchecked: bool,
-    /// For each point, the lanes in which it has pushed in this tick, as a bit mask.
+    /// For each point, the lanes in which its normal impulse has been positive in this tick, as a bit mask.
     pub(super) pushed: [u32; 2],
 }
 
@@ -117,7 +117,7 @@ impl<const N: usize> Batch<N> {
         }
     }
 
-    /// Sets the normal impulse of a point, and records the lanes in which the point pushes.
+    /// Sets the normal impulse of a point, and records the lanes in which it is positive.
     #[inline(always)]
     pub(super) fn push<L: Lanes<N>>(&mut self, place: usize, lambda: L::Int) {
         L::store(lambda, &mut self.points[place].normal_lambda);

@@ -43,7 +43,7 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) drift: [Ints<N>; 2],
     /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
     pub(super) rebound: [Ints<N>; 2],
-    /// For each point, -1 where it has pushed in the bias pass.
+    /// For each point, -1 where its normal impulse is positive after the bias pass.
     touches: [Ints<N>; 2],
     /// For each point of an elastic contact, -1 where it does not approach before contacts act. If the shapes touch or
     /// overlap, -1 only where it separates at the restitution threshold or faster.
@@ -73,7 +73,8 @@ impl<const N: usize> Impacts<N> {
         }
     }
 
-    /// The impact of a point. In the relax pass, only points that pushed in the bias pass rebound.
+    /// The impact of a point. In the relax pass, only points with a positive normal impulse after the bias pass
+    /// rebound.
     #[inline(always)]
     pub(super) fn of_point<L: Lanes<N>>(&self, i: usize, pass: Pass) -> PointImpact<L, N> {
         let rebound = L::load(&self.rebound[i]);
@@ -101,8 +102,8 @@ impl<L: Lanes<N>, const N: usize> PointImpact<L, N> {
     }
 }
 
-/// Measures relative normal velocities before forces act in a tick. Counts no faults: contacts without an impact are
-/// measured only if they share a batch with another one that has extras.
+/// Measures relative normal velocities before forces act in a tick. Counts no faults, which must not depend on the
+/// batches: a contact without extras is measured only if it shares a batch with one that has extras.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct MeasureApproach;
 

@@ -29,7 +29,7 @@ pub(crate) struct ActiveContact {
     pub(crate) is_hit: bool,
     /// Whether the surface has extras or the contact has a hit event.
     pub(crate) extras: bool,
-    /// Whether the rows are those of the last tick.
+    /// Whether the rows have not changed since the last tick.
     pub(crate) keeps_rows: bool,
 }
 

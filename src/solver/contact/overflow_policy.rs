@@ -152,7 +152,7 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> 
     }
 }
 
-/// Applies impulses of more than 512 m/s, which occur when a friction limit shrinks or a pushed shape comes free.
+/// Applies impulses of more than 512 m/s, which occur when a friction limit shrinks or a shape under load comes free.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,

@@ -1,9 +1,9 @@
-//! Restitution: a point bounces if its approach speed was not below the threshold, and if the point or another point
-//! that bounces together with it is pushed. The point separates at `e` times the approach speed, or more slowly if `e`
-//! is at most 1 and the contact would gain energy.
+//! Restitution: a point bounces if its approach speed was not below the threshold, and if its normal impulse, or that
+//! of another point that bounces together with it, is positive. The point separates at `e` times the approach speed, or
+//! more slowly if `e` is at most 1 and the contact would gain energy.
 //!
 //! ```text
-//! L' = max(L - (vn + min(e va + drift, 0)), 0)     in the sub-step in which it is pushed, after the passes
+//! L' = max(L - (vn + min(e va + drift, 0)), 0)     after the passes of the sub-step in which it bounces
 //! ```
 //!
 //! This impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes
@@ -43,8 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities are also read in lanes that do not bounce. There, a velocity that does not fit is no fault, so
-        // that no faults of reading are counted.
+        // Velocities are also read in lanes that do not bounce. There, a velocity that does not fit is no fault.
+        // Reading therefore counts no faults.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);

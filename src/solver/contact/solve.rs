@@ -270,7 +270,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
 
     /// The contact equation. Solves a point in the given lanes: computes the impulse that it should have instead of
     /// `old`, and applies the difference. `other` is the impulse of the other point: a point with a rebound bounces if
-    /// either point pushes.
+    /// it needs an impulse or if either point already has one.
     #[inline(always)]
     fn solve<C: OverflowPolicy<L, N>>(
         &self,
@@ -295,7 +295,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
-            // A gap without an impulse is left to the next sub-step. If its approach slowed down before the gap is
+            // A gap without an impulse is left to the next sub-step. If its approach were slowed before the gap is
             // closed, a ball would rebound from above the floor.
             Pass::Relax => {
                 let approaches = L::both(gap, L::greater(L::splat(1), rebound));

@@ -130,7 +130,7 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
 /// Results of a tick for each contact of the state, by index.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactResults {
-    /// Whether the shapes have pushed each other.
+    /// Whether a normal impulse between the shapes was positive in the tick.
     pub(crate) pushed: Vec<bool>,
     /// Normal impulse of the tick for contacts with a hit event, as the relative velocity that it would give to the
     /// centres of mass. Empty if there is no hit event.

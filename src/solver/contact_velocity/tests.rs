@@ -106,8 +106,8 @@ fn what_is_too_fast_is_a_fault() {
 }
 
 impl Solver {
-    /// Compares the velocity changes by contacts in the last sub-step with those by the accumulated impulses. Returns
-    /// the largest difference and the largest change by impulses, in units of a speed.
+    /// Compares the velocity changes by contacts in the last sub-step with the changes that the accumulated impulses
+    /// cause. Returns the largest difference and the largest change by impulses, in units of a speed.
     pub(crate) fn contact_velocity_error(&mut self, tuning: &Tuning) -> (i32, i32) {
         let Solver { list, contacts, contact_velocities, machine, faults, .. } = self;
         let context = &StepContext::new(*machine, tuning, &mut list.bodies, faults);

@@ -169,8 +169,8 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
 }
 
 /// The row of a gear and the position along it, which is `s` metres per unit of `NA a + NB b` (see `gear.rs`). The
-/// direction of the row has the length `(NA + NB) s / distance`. `s` is that of the pitch line, or that of a row on an
-/// angle if that is smaller, because with a larger `s` the row would hardly move the wheels.
+/// direction of the row has the length `(NA + NB) s / distance`. `s` is the smaller of the scales of the pitch line and
+/// of a row on an angle, because with a larger `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));

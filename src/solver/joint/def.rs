@@ -38,8 +38,8 @@ pub struct JointDef {
     pub kind: JointKind,
     /// Stiffness and damping of what the joint holds rigidly and of its limits.
     ///
-    /// `None` for those of [`SolverSettings`](crate::solver::SolverSettings). The frequency is limited to a quarter of
-    /// the sub-step rate.
+    /// `None` uses the values in [`SolverSettings`](crate::solver::SolverSettings). The frequency is limited to a
+    /// quarter of the sub-step rate.
     pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
@@ -179,7 +179,7 @@ impl JointFrame {
         }
     }
 
-    /// Whether the anchor, on a fixed body, is farther from the origin than lever arms can be.
+    /// Whether the anchor is farther from the body's origin than lever arms can be, which only a fixed body allows.
     pub(super) fn is_far(&self) -> bool {
         let Vec2 { x, y } = self.anchor;
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX

@@ -35,8 +35,8 @@ pub struct Distance {
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
-    /// Motor along the line: speed in m/s, positive apart, and largest force in N. It does not drive beyond `rod` or
-    /// `limit`.
+    /// Motor along the line: speed in m/s, positive if the anchors move apart, and largest force in N. It does not
+    /// drive beyond `rod` or `limit`.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
@@ -69,11 +69,11 @@ impl Distance {
     option_builders! {
         /// Sets the range of the length in metres.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets the speed in m/s, positive apart, and the largest force in N.
+        /// Sets the speed in m/s at which the anchors move apart, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
         /// Sets a spring: frequency in Hz, length in metres.
         spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
-        /// Sets the smallest and the largest force of the spring in N, positive apart.
+        /// Sets the smallest and the largest force of the spring in N. Positive forces push the anchors apart.
         spring_force(lower, upper) => JointLimit { lower, upper };
     }
 

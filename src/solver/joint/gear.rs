@@ -92,8 +92,8 @@ impl Gear {
 /// A wheel on a rack: A turns about its anchor and rolls along the x axis of B's frame.
 ///
 /// The pitch line is at the distance `radius` to the right of that axis. The joint holds no distance: give the wheel a
-/// hinge and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's
-/// anchor so that the joint holds.
+/// hinge and the rack a slider. If the rack is fixed, give the wheel a [`Wheel`](crate::solver::Wheel) joint.
+/// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};

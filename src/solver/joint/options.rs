@@ -65,9 +65,9 @@ pub struct Drive {
 
 /// A damped spring with a target.
 ///
-/// On an angle, the frequency is that of two free bodies. A body on a hinge away from its centre of mass swings more
-/// slowly. Along a line, the stiffness is `(2 pi hertz)^2 m` N/m, with `m` as for [`Soft`]. If the line does not pass
-/// through a centre of mass, the spring also turns the body, which swings faster.
+/// On an angle, two free bodies swing with the frequency `hertz`. A body on a hinge away from its centre of mass swings
+/// more slowly. Along a line, the stiffness is `(2 pi hertz)^2 m` N/m, with `m` as for [`Soft`]. If the line does not
+/// pass through a centre of mass, the spring also turns the body, which swings faster.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -100,11 +100,11 @@ pub struct Spring {
 /// Frequency and damping ratio of a spring, or of what a joint holds rigidly
 /// ([`JointDef::softness`](crate::solver::JointDef::softness)).
 ///
-/// An angular spring has the frequency of two free bodies. A linear spring between anchors has that of two point
-/// masses: the stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the reduced mass `m = MA MB / (MA + MB)`, or
-/// the mass of the only moving body. A body that hangs on a fixed one sags by `g / (2 pi hertz)^2`. If its anchor is
-/// off the centre of mass by `r`, across the pull, frequency and damping ratio are `sqrt(1 + r^2 / k^2)` times as
-/// large, with the radius of gyration `k`.
+/// With an angular spring, two free bodies swing with the frequency `hertz`. With a linear spring between anchors, two
+/// point masses do: the stiffness is `(2 pi hertz)^2 m` N/m in all directions. Here `m` is the reduced mass
+/// `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed one sags by
+/// `g / (2 pi hertz)^2`. If its anchor is off the centre of mass by `r`, across the pull, frequency and damping ratio
+/// are `sqrt(1 + r^2 / k^2)` times as large, with the radius of gyration `k`.
 ///
 /// A linear spring stretched by `x` adds energy to a body of mass `M` if `(2 pi hertz / rate)^2 m x r / (M k^2)` is
 /// above about 1, at a sub-step rate of `rate`.

@@ -29,8 +29,8 @@ pub(super) enum Direction {
     Along,
     /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. For
-    /// prismatic joints, which also hold the angle.
+    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. Prismatic
+    /// joints use it, because they also hold the angle.
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,

@@ -194,9 +194,9 @@ impl JointPose {
         }
     }
 
-    /// Levers to one point, which conserve angular momentum. The point is B's anchor if A reaches it, or if impulses do
-    /// not move one of the bodies. Otherwise it is the end of A's arm, shortened to the reach of A. `None` if B does
-    /// not reach that end.
+    /// Levers to one point, which conserve angular momentum. The point is B's anchor if it is in reach of A
+    /// ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise it is the end of A's arm, shortened to
+    /// this reach. `None` if that end is not in reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

@@ -13,10 +13,10 @@ use crate::math::Fx;
 /// A revolute joint, or hinge: pins A's anchor to B's.
 ///
 /// A steady acceleration `a` of a body separates the anchors by `a / (2 pi f)^2`. Here `f` is the frequency of
-/// [`JointDef::softness`](crate::solver::JointDef::softness) or
-/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), which is doubled if one of the bodies
-/// has no other joint and the other one is not dynamic. At 60 Hz, gravity opens the hinge of a rotor by 18 µm, or by 70
-/// µm if the rotor has another joint.
+/// [`JointDef::softness`](crate::solver::JointDef::softness) or else
+/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The latter is doubled if one of the
+/// bodies has no other joint and the other one is not dynamic. With the default of 60 Hz, gravity opens the hinge of a
+/// rotor by 18 µm, or by 70 µm if the rotor has another joint.
 ///
 /// The angle is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns.
 ///

@@ -20,8 +20,8 @@
 //! The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass, the row is the implicit step of a damped spring.
-//! Solving it again would remove another `massScale biasRate h` of the velocity, and light springs would come to rest
-//! too early.
+//! Solving it again would remove another `massScale biasRate h` of the velocity, and lightly damped springs would come
+//! to rest too early.
 
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;

@@ -145,7 +145,7 @@ impl ShapeMotion {
 
     #[inline]
     pub(crate) fn offset_to(&self, other: &ShapeMotion) -> Vec2<Fx> {
-        // Right for shapes less than 2^30 m apart, even if a sum wraps around at the edge of the world.
+        // Correct for shapes less than 2^30 m apart, even if a sum wraps around at the edge of the world.
         let twice = |shape: &ShapeMotion| shape.bounds.lower.wrapping_add(shape.bounds.upper);
         let Vec2 { x, y } = twice(other).wrapping_sub(twice(self));
         Vec2::new(x >> 1, y >> 1)

@@ -26,7 +26,7 @@ pub(crate) struct Poses {
 pub(crate) struct Extents {
     /// Radius of a disc inside the thinnest solid shape; [`Fx::MAX`] without a solid shape.
     pub(crate) core: Fx,
-    /// Upper bound of the distance of points that move when the body rotates. Only the centre of a disc counts.
+    /// Upper bound of the distance of points that move when the body rotates. A circle counts with its centre only.
     pub(crate) reach: Fx,
     /// Upper bound of the distance of all points.
     pub(crate) radius: Fx,

@@ -91,7 +91,7 @@ pub struct Explosion {
     pub centre: Vec2<Fx>,
     /// Distance from the centre in metres up to which the impulse is constant, 0 to 1000.
     pub radius: Fx,
-    /// Distance in metres beyond the radius over which the impulse falls to 0, 0 to 1000.
+    /// Distance in metres, 0 to 1000, over which the impulse falls to 0 beyond the radius.
     pub falloff: Fx,
     /// Impulse in N s per metre of a shape's width, ±2^20. A negative impulse pulls.
     pub impulse_per_length: Fx,

@@ -48,7 +48,7 @@ impl BodyField {
     /// The three speeds.
     pub const SPEEDS: [BodyField; 3] = [BodyField::VelocityX, BodyField::VelocityY, BodyField::Spin];
 
-    /// Returns the name of the field in the view of a snapshot.
+    /// Returns the name of the field in the human-readable form of a snapshot.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

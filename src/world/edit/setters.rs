@@ -281,9 +281,9 @@ impl World {
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Prepares for a change of the mass between 0 and a positive value, because two bodies without mass have no
-    /// contact and no acting joint. Wakes overlapping and joined bodies, and makes the next pair update check all
-    /// pairs.
+    /// Prepares for a change of the mass from 0 to a positive value or back. Contacts and joints with other bodies
+    /// without mass then begin or cease to act. Therefore wakes overlapping and joined bodies, and makes the next pair
+    /// update check all pairs.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());

@@ -48,7 +48,7 @@ pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
     }
 }
 
-/// Puts the sets to sleep that are not marked to stay awake.
+/// Puts to sleep the sets that are not marked to stay awake.
 pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = &mut *scratch;
     let mut any = false;

@@ -12,8 +12,8 @@
 //! A character stores the pose that the body of its ground had at the last move. The next move starts with the
 //! displacement, since the last move, of the point under the character's feet. The velocity of the body would not be
 //! sufficient: that velocity is 0 after [`World::move_to`], and does not give the displacement of a platform that turns
-//! or stops. A character that leaves its ground takes the velocity of the body along or, if that is 0, the displacement
-//! per tick.
+//! or stops. A character that leaves its ground takes the velocity of the body along. If that velocity is 0, it takes
+//! the displacement since the last move instead, as that of one tick.
 
 use alloc::vec::Vec;
 
@@ -212,8 +212,9 @@ impl World {
     /// [`QueryFilter::except`], and let it follow by [`World::move_to`].
     ///
     /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
-    /// the surface speed of a belt. Call this after each [`World::step`]: otherwise the character is behind its lift,
-    /// and leaves a body that [`World::move_to`] moves with its displacement of several ticks as the velocity.
+    /// the surface speed of a belt. Call this after each [`World::step`]. Otherwise the character lags behind its lift,
+    /// and is too fast when it leaves a body that [`World::move_to`] moves: the displacement of several ticks counts as
+    /// that of one.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

@@ -227,8 +227,8 @@ fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     translation
 }
 
-/// Returns the velocity nearest to a given one that does not enter the rigid planes that have pushed. Unlike that of
-/// Box2D's `b2ClipVector`, the result does not depend on the order of the planes.
+/// Returns the velocity nearest to a given one that does not enter the rigid planes with a positive `push`. The result
+/// does not depend on the order of the planes, unlike in Box2D's `b2ClipVector`.
 #[must_use]
 pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
     let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);

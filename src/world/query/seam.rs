@@ -4,9 +4,9 @@
 //! tile or chain link. A hit of a cast that starts in contact is therefore confirmed by a second cast, from where the
 //! shape just rests on the touched surfaces. An obstacle that the second cast does not meet is a seam.
 //!
-//! Contacts that the cast leaves or slides along lift the shape. A contact that the cast moves into stops the shape.
-//! Between a floor and a ceiling the shape cannot be lifted off both, so that there is also a second cast for each
-//! surface alone.
+//! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. It is not
+//! lifted off a surface that the cast moves into, which stops it. Between a floor and a ceiling the shape cannot be
+//! lifted off both, so that there is also a second cast for each surface alone.
 
 use smallvec::SmallVec;
 

@@ -136,7 +136,8 @@ impl Probe {
         })
     }
 
-    /// Returns where this shape meets another as it moves along a translation in metres, as in [`World::cast_shape`].
+    /// Returns where this shape meets another as it moves along a translation in metres: see [`World::cast_shape`].
+    /// Unlike there, chain links are solid from both sides.
     #[must_use]
     #[doc(alias = "shapecast")]
     pub fn cast(&self, translation: impl Into<Vec2<Fx>>, other: &Probe) -> Option<ProbeHit> {
@@ -169,7 +170,7 @@ impl Probe {
     }
 
     /// Returns the contact manifold with another shape, as the solver gets it for shapes at rest. Empty if the surfaces
-    /// are more than `margin` metres apart, 0 to 15, or if both shapes are segments or links.
+    /// are more than `margin` metres apart, or if both shapes are segments or links. `margin` is clamped to 0 to 15.
     #[must_use]
     #[doc(alias = "collide")]
     pub fn manifold(&self, other: &Probe, margin: Fx) -> Manifold {

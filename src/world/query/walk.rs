@@ -28,8 +28,8 @@ const STANDING: Fx = fx!(0.000105);
 enum Overlaps {
     /// Overlapping shapes stop a cast that goes deeper.
     Stop,
-    /// Shapes of fixed bodies stop a cast that goes deeper. Others, such as the platforms of a train, have moved over
-    /// the character and push it out after it has been carried.
+    /// Shapes of fixed bodies stop a cast that goes deeper. Other overlapping shapes, such as the next car of a train,
+    /// let the cast pass. They have moved over the character, and push it out after it has been carried.
     Pass,
 }
 
@@ -96,8 +96,9 @@ impl<'a> Walk<'a> {
             let hit = self.cast_among(&self.probe, by, Overlaps::Pass, Some(ground.body));
             self.advance(hit.map_or(by, |(travelled, _)| travelled));
         }
-        // A body that `World::move_to` has moved has no velocity after the tick. Other bodies may have moved for several
-        // ticks since the last move of the character, or may have been placed elsewhere.
+        // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
+        // velocity is 0, the displacement counts as that of one tick. This is for a body moved by `World::move_to`, but
+        // also applies to a fixed or resting body that `World::set_transform` has placed elsewhere.
         let mut velocity = body.velocity_at(ground.point);
         if velocity == Vec2::ZERO {
             let rate = i64::from(self.world.state.config.tick_rate);
@@ -148,8 +149,8 @@ impl<'a> Walk<'a> {
         self.climbed = (self.position().y - start).max(Fx::ZERO);
     }
 
-    /// Moves a character that was on ground or has met ground down to the ground. A character that has walked off the
-    /// ground falls.
+    /// Puts the character down on the ground, if it was on ground or has met ground in this move. A character that has
+    /// walked off the ground falls.
     pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
         let walked = self.along.is_some();
         let found = self.find_ground().filter(|plane| !self.leaves(plane));
@@ -238,8 +239,8 @@ impl<'a> Walk<'a> {
         if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
     }
 
-    /// Normals that limit a translation (with ground) or a velocity (without ground). A walking character is limited
-    /// only by the ground that it walks along.
+    /// Normals that limit a translation (`ground_too`) or a velocity (not `ground_too`). While the character walks, the
+    /// only ground among them is that along which it walks.
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
@@ -342,8 +343,8 @@ impl<'a> Walk<'a> {
 }
 
 /// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to
-/// the range between 0 and the character's own velocity. A belt carries a character that drops straight down on it at
-/// once. A character that jumps straight up in a moving train stands still in the train.
+/// the range between 0 and the character's own velocity. A character that drops straight down on a belt is carried at
+/// once. A character that jumps straight up in a moving train lands at rest in the train.
 fn taken_along(velocity: Fx, ground: Fx) -> Fx {
     velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }

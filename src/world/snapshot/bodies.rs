@@ -25,7 +25,8 @@ const TARGET: u8 = 4;
 const BODY_BYTES: usize = 36;
 const OPTIONAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
-/// Number of bodies in a block. The boxes of a block are packed right after its bodies, whose centres are then cached.
+/// Number of bodies in a block. The boxes of a block are packed right after its bodies, whose centres are then in the
+/// processor's cache.
 const BLOCK: usize = 32;
 /// Marker in place of the first coordinate of a box that follows in full.
 const NOT_NEAR: i32 = i32::MIN;

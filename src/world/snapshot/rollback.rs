@@ -150,7 +150,7 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
-        // Each buffer is hashed while it is cached.
+        // Each buffer is hashed while it is in the processor's cache.
         let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } =
             &mut self.packed;
         packed_bodies.pack(state);

@@ -112,7 +112,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(body.rest_ticks.to_bits() <= sleepiest, || {
         at("more ticks at rest than a body of its kind can have")
     })?;
-    // A kinematic body that stops has to be active for one more tick. Therefore a moving one must not have settled.
+    // A kinematic body stays active for one tick after it stops, until it is marked as settled. A moving body with this
+    // mark would skip that tick.
     let rests = body.kind == BodyKind::Kinematic && body.rest_ticks.has_settled();
     check(!(rests && body.is_moving()), || at("settled with a velocity"))?;
     let name = body.name().map_or(Ok(()), |name| name.validate());

@@ -73,7 +73,7 @@ struct NearContacts {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ManifoldSource {
     Kept,
-    /// The pair was collided with the other box pairs of the block.
+    /// The box kernel has collided the pair, in one batch with the other box pairs of the block.
     BoxPair,
     Shapes,
 }

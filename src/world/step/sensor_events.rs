@@ -72,7 +72,8 @@ struct Visit {
 impl Visit {
     /// Follows a pair through the tick. `was_inside` is whether its shapes overlapped at the end of the last tick.
     fn of(state: &State, scratch: &Scratch, pair: Pair, was_inside: bool) -> Self {
-        // The search clips the first shape. Only fixed bodies can have segments so long that they need clipping.
+        // The search clips only its first shape. A shape of a fixed body comes first, because other bodies have no
+        // segments so long that they need clipping.
         let (a, b) = match state.body_of(pair.1).kind() {
             BodyKind::Fixed => (pair.1, pair.0),
             BodyKind::Kinematic | BodyKind::Dynamic => pair,
@@ -230,8 +231,8 @@ fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
             ControlFlow::Continue(())
         });
     }
-    // The new fat box need not cover the path. On the path, the shape may have met another shape that has also left its
-    // box.
+    // A new fat box need not cover the path of its shape. The broad phase may therefore miss a pair of shapes that have
+    // both left their box.
     let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
     for &sensor in left.iter().filter(is_sensor) {
         left.iter().for_each(|&shape| consider(sensor, shape));

@@ -17,9 +17,9 @@ use fixed::types::extra::{LeEqU32, U27};
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
 ///
-/// The lever arm is the vector from the body's centre to the manifold's origin, plus the anchor of the point. The first
-/// part is common to all points; each point adds `(tA - tB) (anchor x n)`. The result is in units of `Step` and does
-/// not saturate.
+/// The lever arm is the vector from the body's centre to the manifold's origin, plus the anchor of the point. The terms
+/// without the anchor are common to all points; each point adds `(tA - tB) (anchor x n)`. The result is in units of
+/// `Step` and does not saturate.
 #[inline(always)]
 pub(super) fn approach(
     a: &PredictedMotion,
@@ -110,8 +110,8 @@ impl SpeculativePair<'_> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let closing_at = approach(motions[0], motions[1], manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
-        // Largest approach at a point that acts within the tick. Shapes that overlap more deeply do not pass by each
-        // other.
+        // Largest approach at a point that acts within the tick. Shapes that overlap by more than the slack do not pass
+        // by each other.
         let mut fastest = 0;
         manifold.retain(|point| {
             let separation = raw(point.separation);

@@ -123,7 +123,8 @@ impl ContactView<'_> {
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        // Manifolds are in the solver's order. Pairs may have been removed from `touching` since.
+        // The index of the manifold is the place of the pair in the solver. `place` may be smaller, because edits
+        // remove pairs from `touching`.
         self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 

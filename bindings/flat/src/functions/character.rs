@@ -9,8 +9,8 @@ use crate::records::{RawMover, RawMoverPlane, RawMoverState, RawQueryFilter};
 use crate::table::with;
 
 api! {
-    /// Sets the defaults of a character with a shape of the given kind: slopes up to 45 degrees, no steps, and ground
-    /// that falls by up to 0.1 m in a tick. The caller sets the geometry.
+    /// Sets the defaults of a character with a shape of the given kind: it stands on slopes up to 45 degrees, climbs no
+    /// steps, and follows ground that descends by up to 0.1 m in a tick. The caller sets the geometry.
     fn ls2d_mover_init(kind: u32, mover: Out<'_, RawMover>) {
         let mut mover = mover;
         mover.set(RawMover::of_kind(kind))

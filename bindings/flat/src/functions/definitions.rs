@@ -14,7 +14,7 @@ const SHAPES_MAX: usize = 4096;
 
 pub(super) fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef>> {
     if count > SHAPES_MAX {
-        return Err(super::library::copied("a body of at most 4096 shapes", count));
+        return Err(super::library::copied("a body has at most 4096 shapes", count));
     }
     shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
 }
@@ -40,8 +40,9 @@ api! {
         def.set(RawJointDef::of_kind(kind)?)
     }
 
-    /// Makes the links of a chain through some points: closed if `closed` is not 0, solid from the right only if
-    /// `one_sided` is not 0. The other properties are those of `base`.
+    /// Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
+    /// first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
+    /// those of `base`.
     fn ls2d_chain_links(
         base: In<'_, RawShapeDef>,
         points: In<'_, RawVec2>,
@@ -55,7 +56,7 @@ api! {
         let (mut links, mut count) = (links, count);
         let mut base = base.get()?;
         if point_count > SHAPES_MAX + 1 {
-            return Err(super::library::copied("a chain of at most 4096 links", point_count));
+            return Err(super::library::copied("a chain has at most 4097 points", point_count));
         }
         let points: Vec<Vec2<Fx>> = points.slice(point_count)?.iter().map(|point| point.vec()).collect();
         let mut chain = Chain::new(&points);
@@ -74,7 +75,7 @@ api! {
         links.set_all(capacity, &mut count, &made)
     }
 
-    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, as in a definition. Null
+    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Null
     /// pointers are not written. At least one shape must have both an area and a density.
     fn ls2d_shapes_mass(
         shapes: In<'_, RawShapeDef>,

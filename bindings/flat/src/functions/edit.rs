@@ -267,7 +267,8 @@ api! {
         edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
     }
 
-    /// Sets the mass of a body from a definition. The other fields have no effect.
+    /// Sets the mass of a body: from the definition if it has `LS2D_BODY_GIVEN_MASS`, otherwise from the body's shapes.
+    /// Other fields of the definition have no effect.
     fn ls2d_set_mass(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         let def = def.get()?;
         def.settings()?;

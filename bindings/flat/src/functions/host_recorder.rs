@@ -16,7 +16,7 @@ use crate::table::{self, Bytes, with};
 /// Rules (name, version), players, tick rate, bytes of an input, hash of the first state, the game's own setup.
 pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
 
-/// A game that the host plays, for its recorder.
+/// Stands for the game that the host simulates, because a [`Recorder`] needs a [`Game`].
 pub(super) struct HostGame {
     players: u32,
     tick_rate: u32,
@@ -141,7 +141,7 @@ api! {
         let mut recorder = recorder;
         recorder.check()?;
         if !are_possible(players, input_bytes) {
-            return Err(value("players or bytes of an input", format!("{players}, {input_bytes}")));
+            return Err(value("the numbers of players and input bytes", format!("{players} and {input_bytes}")));
         }
         let rules = rules.text(rules_length)?.as_bytes().to_vec();
         let setup = setup.slice(setup_size)?.to_vec();

@@ -16,9 +16,9 @@ use crate::records::{RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, with};
 
-/// Largest number of default intervals between saved states in a replay.
+/// By default, a replay is divided into at most this many intervals, with a saved state at each boundary.
 const SAVES: u64 = 256;
-/// Smallest default interval between saved states, in ticks.
+/// No default interval is shorter than this, in ticks.
 const SAVE_INTERVAL: u64 = 60;
 
 /// Consecutive ticks with equal inputs.
@@ -31,8 +31,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Inputs of all players, zeros for absent ones. A run does not store these zeros, so that a file without players
-    /// does not take many times its size in memory.
+    /// Inputs of all players, zeros for absent ones. A run does not store these zeros, so that a replay with absent
+    /// players does not take many times the size of its file in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];
@@ -59,7 +59,7 @@ pub(crate) struct HostReplay {
     pub(super) tick: u64,
     /// Tick of the last comparison; `None` before the first one and after loading a state.
     pub(super) compared: Option<u64>,
-    /// Number of checkpoints from the start that are equal.
+    /// Number of checkpoints, from the first on without a gap, that the state hashes matched.
     equal: usize,
     pub(super) failed: Option<Verdict>,
     /// Claims that the host has added.
@@ -138,7 +138,7 @@ impl HostReplay {
         }
         if index < self.equal {
             let why = "saving and loading this game loses state";
-            return Err(Failure::new(Status::Record, format!("tick {tick} no longer has its state: {why}")));
+            return Err(Failure::new(Status::Record, format!("the state of tick {tick} has changed: {why}")));
         }
         let last_equal = self.equal.checked_sub(1).and_then(|last| self.checkpoints.get(last));
         let last_equal = last_equal.map(|checkpoint| checkpoint.tick);
@@ -216,7 +216,7 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as bytes, and figures of the replay. Null pointers to figures are not written.
+    /// Name of the rules as a bytes object, and numbers that describe the replay. Pointers except `rules` may be null.
     fn ls2d_replay_rules(
         replay: u32,
         rules: Out<'_, u32>,

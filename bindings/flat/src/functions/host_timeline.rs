@@ -16,7 +16,7 @@ impl HostReplay {
         }
         let latest = self.saved.range(..=self.target).next_back().copied();
         if self.target < self.tick {
-            let failure = || value("the tick to go to, without a saved state before it,", self.target);
+            let failure = || value("without an earlier saved state, the tick to go to", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
         // A step forwards by one tick is played, so that the game can show its events.
@@ -68,7 +68,7 @@ api! {
 
     /// The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
     /// `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
-    /// `LS2D_RECORD` if the game has diverged from the file before that tick.
+    /// `LS2D_RECORD` if the game has diverged from the file at that tick or before.
     fn ls2d_replay_next_request(
         replay: u32,
         request: Out<'_, RawRequest>,

@@ -74,5 +74,5 @@ api! {
 }
 
 pub(super) fn copied(text: &str, given: usize) -> Failure {
-    Failure::new(Status::Value, format!("{text} has {given} items"))
+    Failure::new(Status::Value, format!("{text}, and not {given}"))
 }

@@ -292,8 +292,8 @@ api! {
         })
     }
 
-    /// Numbers of ticks: `played` is the number of ticks played, `last` of ticks with final inputs, `confirmed` of
-    /// ticks played with final inputs. Null pointers are not written.
+    /// Numbers of ticks: `played` ticks were played, `last` ticks have final inputs, and `confirmed` ticks were played
+    /// with final inputs. Null pointers are not written.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
@@ -354,8 +354,8 @@ api! {
         })
     }
 
-    /// Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
-    /// has decided, other peers can get seats.
+    /// Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+    /// majority has decided on the end, other peers can get seats.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);

@@ -156,8 +156,8 @@ api! {
         })
     }
 
-    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world or
-    /// disabled.
+    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is disabled or not in the
+    /// world.
     fn ls2d_shape_distance(world: u32, a: RawShape, b: RawShape, distance: Out<'_, RawFx>) {
         let mut distance = distance;
         let (a, b) = (a.id()?, b.id()?);

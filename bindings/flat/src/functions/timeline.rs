@@ -70,8 +70,9 @@ api! {
         })
     }
 
-    /// Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays at that
-    /// tick.
+    /// Goes to a tick. If the replay cannot be played up to it (a checkpoint differs, inputs are not valid, or a limit
+    /// is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to the
+    /// tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable.
     fn ls2d_timeline_seek(timeline: u32, tick: u64) {
         go(timeline, |timeline| timeline.seek(tick).map(|()| Step::Ticked))
     }

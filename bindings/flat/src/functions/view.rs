@@ -102,7 +102,7 @@ api! {
         })
     }
 
-    /// Definition of a shape and its body.
+    /// Definition of a shape, and handle of its body. Null pointers are not written.
     fn ls2d_shape_get(world: u32, id: RawShape, def: Out<'_, RawShapeDef>, owner: Out<'_, RawBody>) {
         let (mut def, mut owner) = (def, owner);
         with(world, |world: &mut World| {
@@ -180,8 +180,8 @@ api! {
         })
     }
 
-    /// Sets the anchors and angles of a definition for the current poses: the anchor at a point of the world, the axis
-    /// along a direction in the world. A direction of zero is the x axis.
+    /// Copies a definition, with anchors and angles for the current poses: both anchors are at a point of the world,
+    /// the axis has a direction in the world (zero: the x axis). A gear, rack or pulley gets no position error.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

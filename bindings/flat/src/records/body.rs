@@ -113,7 +113,7 @@ records! {
         mass: RawFx,
         /// Moment of inertia about the centre of mass in kg m².
         inertia: RawFx,
-        /// The game's number.
+        /// The number that the game stores with the body.
         user_data: u64,
         /// Decay rate of the velocity, per second.
         linear_damping: RawFx,

@@ -36,9 +36,9 @@ records! {
         contact: u32,
         /// Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
         flags: u32,
-        /// Stiffness of soft contacts in Hz, or share of the overlap corrected in each sub-step.
+        /// Stiffness of soft contacts in Hz; for Baumgarte contacts, share of the overlap corrected in each sub-step.
         contact_stiffness: RawFx,
-        /// Damping ratio of soft contacts, or overlap in metres that is not corrected.
+        /// Damping ratio of soft contacts; for Baumgarte contacts, overlap in metres that is not corrected.
         contact_damping: RawFx,
         /// Largest speed in m/s with which contacts push shapes apart.
         contact_push_speed: RawFx,

@@ -62,7 +62,7 @@ constants! {
 
 records! {
     /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
-    /// only with that flag, except that a pulley reads `length`.
+    /// only with that flag, except that a pulley always reads `length`.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,

@@ -25,14 +25,14 @@ constants! {
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
     /// Request: keep a copy of the state before `tick`. It replaces an older one for the same tick.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
-    /// Request: restore the copy of the state before `tick`. In a match, later copies are not requested again.
+    /// Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
     /// Request: simulate `tick` with the inputs.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
     /// Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
     /// hash of the current state to `ls2d_replay_check`.
     REQUEST_CHECKSUM = 3, "LS2D_REQUEST_CHECKSUM";
-    /// Request: copies of states before `tick` are not needed.
+    /// Request: copies for ticks below `tick` are no longer needed.
     REQUEST_FORGET = 4, "LS2D_REQUEST_FORGET";
     /// Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
     /// ticks.
@@ -166,7 +166,7 @@ records! {
         history: u32,
         /// Minimum number of final ticks whose inputs are kept.
         log_ticks: u32,
-        /// Number of ticks from the effect of a join to the first tick of the peer.
+        /// Number of ticks from the agreement that a peer joins to its first tick, in addition to three round trips.
         seat_lead: u32,
         /// A peer that lags by at most this many ticks may have a seat.
         seat_within: u32,

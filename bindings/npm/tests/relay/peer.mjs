@@ -9,7 +9,7 @@ import { parseArgs } from "node:util";
 import { register } from "node:module";
 import * as L from "../../src/index.js";
 
-// The page imports the package by its name.
+// Resolves the name `lockstep2d`, by which the page imports the package.
 const here = JSON.stringify(new URL("../../src/index.js", import.meta.url).href);
 register(`data:text/javascript,${encodeURIComponent(`export const resolve = (name, context, next) =>
     name === "lockstep2d" ? { url: ${here}, shortCircuit: true } : next(name, context);`)}`);

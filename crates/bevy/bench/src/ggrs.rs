@@ -1,5 +1,5 @@
-//! An app whose physics is saved by the schedules of bevy_ggrs. There is no session, so that each save and load is
-//! timed.
+//! An app whose physics is saved by the schedules of bevy_ggrs. The benchmark runs them without a session, to time each
+//! save and load.
 
 use std::time::Duration;
 

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         while let Some(event) = peer.next_event() {
             if let PeerEvent::Desync(desync) = event {
-                return Err(format!("other states than theirs since tick {}", desync.tick).into());
+                return Err(format!("the states of the players differ since tick {}", desync.tick).into());
             }
         }
     }

@@ -67,7 +67,7 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
         }
         Some((status, peer)) => {
             let guessed = peer.tick().saturating_sub(peer.confirmed());
-            format!("{name}: {status:?}, tick {}, {guessed} of them guessed", peer.tick())
+            format!("{name}: {status:?}, tick {}, {guessed} ticks guessed", peer.tick())
         }
     };
     platform::show(&text, &mut windows);
@@ -77,7 +77,7 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
 fn enter(mut events: MessageReader<MatchEvent>, room: Res<Room>) -> Result {
     for MatchEvent(event) in events.read() {
         if let PeerEvent::Desync(desync) = event {
-            return Err(format!("other states than theirs since tick {}", desync.tick).into());
+            return Err(format!("the states of the players differ since tick {}", desync.tick).into());
         }
         platform::enter(&room.0);
     }

@@ -13,12 +13,13 @@ use crate::error::CommandError;
 /// Find the tick, stage, body and field in which two runs first differ
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Without B, A is compared with a run of this program on the same inputs. A replay has one hash a \
-                        second, so only the second of the first difference can be found. A trace of that second, \
-                        written with `trace` by the program that wrote the replay, gives the tick, phase, body and \
-                        field. With B, replays may have different inputs or setups: both are played until their states \
-                        differ. Tick t is the state after t ticks.\n\nExit code: 0 when nothing differs, 1 when \
-                        something does, 2 for wrong usage, or files that cannot be read or compared."
+    after_help = "Without B, A is compared with a run of this program on the same inputs. A replay has a hash \
+                        only at each checkpoint, so `bisect` finds only between which checkpoints the runs diverge. \
+                        A trace of these ticks, written with `trace` by the program that wrote the replay, gives the \
+                        tick, phase, body and field. With B, replays may have different inputs or setups: both are \
+                        played until their states differ. Tick t is the state after t ticks.\n\nExit code: 0 when \
+                        nothing differs, 1 when something does, 2 for wrong usage, or files that cannot be read or \
+                        compared."
 )]
 pub(crate) struct Arguments {
     /// A replay, a trace or a report of a divergence

@@ -123,7 +123,7 @@ fn export_world(
     console: &mut Console<'_>,
 ) -> CommandResult {
     if arguments.tick.is_some_and(|tick| tick != world.tick()) {
-        return Err(CommandError::NothingThere { what: "other tick than its own".into() });
+        return Err(CommandError::NothingThere { what: "other tick in this snapshot".into() });
     }
     match format {
         Format::Svg | Format::Png => {

@@ -117,7 +117,7 @@ fn state_of_report<G: Game>(
     let saved = report.saves().iter().find(|(saved, _)| *saved == tick);
     let Some((_, save)) = saved else {
         if report.replay().is_empty() {
-            return Err(CommandError::NothingThere { what: format!("state of tick {tick}") });
+            return Err(CommandError::NothingThere { what: format!("state of tick {tick} in this report") });
         }
         return state_of_replay(report.replay(), arguments, context);
     };

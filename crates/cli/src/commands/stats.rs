@@ -18,10 +18,10 @@ use crate::panics;
 /// Play a replay and print figures of its ticks: work, bodies, contacts and so on
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Work is the game's estimate of the cost of a tick, made before the tick, in work units. Faults are \
-                        results that were clamped. Figures of tick t are of the state after t ticks, and of the step \
-                        that led to it.\n\nExit code: 0 when all of it was played, 1 when it cannot be played to its \
-                        end, 2 for wrong usage, or a file that cannot be read."
+    after_help = "Work is the cost of a tick in work units: the game's estimate before the tick, and what the world \
+                        counts during it. Faults are results that were clamped. Figures of tick t are of the state \
+                        after t ticks, and of the step that led to it.\n\nExit code: 0 when all of it was played, 1 \
+                        when it cannot be played to its end, 2 for wrong usage, or a file that cannot be read."
 )]
 pub(crate) struct Arguments {
     /// The replay

@@ -16,10 +16,10 @@ use crate::output_file::{OutputFile, Overwrite};
 #[derive(Args, Debug)]
 #[command(
     after_help = "This program plays the inputs again; checkpoints of the file are not checked. A program of another \
-                        platform can `bisect` the trace to find the tick, phase, body and field in which the two first \
-                        differ.\n\nExit code: 0 when it was written, 1 when the replay cannot be played up to the \
-                        tick, 2 for wrong usage, a tick after the end, or files that cannot be read or \
-                        written."
+                        platform can `bisect` the trace to find the tick, phase, body and field in which the two \
+                        programs first differ.\n\nExit code: 0 when it was written, 1 when the replay cannot be \
+                        played up to the tick, 2 for wrong usage, a tick after the end, or files that cannot be read \
+                        or written."
 )]
 pub(crate) struct Arguments {
     /// The replay

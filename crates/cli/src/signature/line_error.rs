@@ -47,7 +47,7 @@ impl fmt::Display for Flaw {
             Flaw::NoSignature => {
                 write!(
                     f,
-                    "not \"lockstep2d signature 1\", a public key of 64 and a signature of 128 hexadecimal digits"
+                    "not \"lockstep2d signature 1\", a public key (64 hexadecimal digits) and a signature (128 digits)"
                 )
             }
             Flaw::NoSecretKey => write!(f, "not \"lockstep2d secret key 1\" and 64 hexadecimal digits"),
@@ -55,7 +55,7 @@ impl fmt::Display for Flaw {
             Flaw::InvalidKey => write!(f, "not a valid public key"),
             Flaw::KeyTwice => write!(f, "a second line of the same key"),
             Flaw::Name => write!(f, "the name is longer than 64 bytes or has control characters"),
-            Flaw::Unfinished => write!(f, "the line does not end"),
+            Flaw::Unfinished => write!(f, "the line does not end with a line feed"),
             Flaw::TooMany => write!(f, "more than {SIGNATURES_MAX} signatures"),
         }
     }

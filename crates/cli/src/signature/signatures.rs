@@ -33,7 +33,8 @@ pub struct Signature {
     pub bytes: [u8; 64],
 }
 
-/// The signatures of a replay: at most one by each key, in the order of the file. Equal values have exactly one text.
+/// The signatures of a replay: at most one by each key, in the order of the lines of the signature file. The text is
+/// canonical: each `Signatures` has exactly one.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};
@@ -57,7 +58,7 @@ pub struct Signature {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signatures(Vec<Signature>);
 
-/// Path of the signature file of a replay, with `.sig` appended.
+/// Path of the signature file of a replay: the path of the replay with `.sig` appended.
 #[must_use]
 pub fn path_beside(replay: &Path) -> PathBuf {
     let mut path = replay.as_os_str().to_os_string();

@@ -1,7 +1,7 @@
 //! Keys, signature files and cache entries lose no data if the disk is full, if a process is killed, or if two
 //! processes write the same file.
 #![cfg(unix)]
-#![expect(clippy::disallowed_types, reason = "kills come at moments of a run whose length is measured")]
+#![expect(clippy::disallowed_types, reason = "a run is timed, so that kills hit random moments of it")]
 
 use std::fs;
 use std::io::Read;

@@ -53,8 +53,8 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Accepts connections until the future is dropped. Connections that were accepted before then continue until they
-    /// end or the runtime is dropped.
+    /// Accepts connections until the future is dropped. Connections that are open by that time continue until they end
+    /// or the runtime is dropped.
     pub async fn run(self) {
         let places = Arc::new(Semaphore::new(self.limits.connections));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });

@@ -29,7 +29,7 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether each frame contains the current palette, because this palette differs from the global one.
+    /// Whether the current palette differs from the global one. Each frame then contains the current palette.
     is_local: bool,
     /// Picture that is shown after the last frame.
     shown: Vec<[u8; 3]>,

@@ -1,9 +1,9 @@
 //! [`Palette`]: at most 255 colours for a frame, and a transparent colour.
 //!
-//! Up to 255 colours are kept exactly. If there are more, only the most frequent colours are kept exactly, because
-//! changes of colour are visible in large areas. The other colours are divided into boxes, and each box gives its mean
-//! colour. Until there are enough boxes, one is split: the box with the largest sum of squared errors in a channel, at
-//! the mean of that channel.
+//! Up to 255 colours are kept exactly. If there are more, only the most frequent colours are kept exactly, because they
+//! fill large areas, where a changed colour is visible. The other colours are divided into boxes, and each box gives
+//! its mean colour. While there are too few boxes, the box with the largest sum of squared errors in a channel is split
+//! at the mean of that channel.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ type Rgb = [u8; 3];
 const COLOURS_MAX: usize = 255;
 /// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
-/// Largest error per channel with which a frame uses an existing palette. Stray colours may have larger errors.
+/// Largest error per channel at which a frame still uses the existing palette. Stray colours may have larger errors.
 const ERROR_MAX: u8 = 24;
 /// A colour is stray if at most one in this number of pixels has it.
 const PIXELS_OF_A_STRAY: u64 = 20_000;

@@ -87,7 +87,7 @@ impl Side {
         (point[self.axis] - self.bound) * self.sign <= 0.0
     }
 
-    /// The point where a line crosses the bound. On the axis of the bound it is exact, for a line of any length.
+    /// The point where a line crosses the bound. Its coordinate on the axis of the bound is exact for any line.
     fn crossing(&self, from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
         let (a, b) = (from.map(f64::from), to.map(f64::from));
         let share = (f64::from(self.bound) - a[self.axis]) / (b[self.axis] - a[self.axis]);

@@ -53,7 +53,7 @@ impl OnlineArgs {
         host.or(join).or_else(|| self.watch.clone().map(Entry::Watch))
     }
 
-    /// Enters a match of the named scene. Without a name, of the first scene with a setup.
+    /// Enters a match of the named scene or, without a name, of the first scene with a setup.
     pub(super) fn open<G: Game + 'static>(
         &self,
         viewer: &Viewer<G>,

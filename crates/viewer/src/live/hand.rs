@@ -110,7 +110,7 @@ impl Hand {
                 // The world had no room for the anchor, so the grab ends.
                 None => self.hold = Hold::Nothing,
             },
-            // The joint is gone, for example because its body was removed.
+            // The joint may be gone, for example because its body was removed.
             Hold::Holding(grab, anchor) => {
                 if !world.joints().any(|(_, joint)| joint.def().user_data == grab.mark) {
                     self.drop_anchor(anchor, commands);

@@ -67,8 +67,8 @@ impl<S> History<S> {
         }
     }
 
-    /// Returns the save to drop, which is never the first or the last. Its removal leaves a gap. The gap divided by the
-    /// distance of the save from `here` plus [`NEAR`] is the smallest.
+    /// Returns the save to drop, which is never the first or the last. For each save, the gap that its removal would
+    /// leave is divided by its distance from `here` plus [`NEAR`]. The save with the smallest result is returned.
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));

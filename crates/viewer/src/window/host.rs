@@ -53,7 +53,7 @@ impl Host {
 
     /// Sleeps if the display does not limit the frame rate, as with a virtual display. `elapsed` is in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// Shortest frame time, in seconds, with which the display seems to limit the frame rate.
+        /// A frame shorter than this, in seconds, shows that the display does not limit the frame rate.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));

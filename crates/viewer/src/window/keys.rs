@@ -91,7 +91,7 @@ pub(super) fn button(button: MouseButton) -> Option<Button> {
     }
 }
 
-/// Wheel movement that miniquad reports for one notch. This is a line or the scroll distance of the platform.
+/// Wheel movement that miniquad reports for one notch: one line, or the scroll distance of the platform.
 const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     100.0
 } else if cfg!(target_os = "windows") {

@@ -46,7 +46,8 @@ fn each_overlay_is_what_the_draw_list_says() {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // A pixel may change less in one picture, so the other picture is compared with a smaller step.
+        // A pixel that changes by more than 24 with one rasteriser may change less with the other. There, changes by
+        // more than 4 count.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());
         assert!(seen.len() > 30, "layer {key}: only {} pixels change", seen.len());
@@ -63,9 +64,10 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// Largest share of pixels that may differ by much, because of crossing lines: one in this many.
+/// At most one pixel in this many may differ by more than 64, because of crossing lines.
 const SHAPES: usize = 1000;
-/// Largest such share in layers with small text, which only one of the two rasterisers aligns to pixels.
+/// In layers with small text, at most one pixel in this many may differ by more than 64, because only one of the two
+/// rasterisers aligns text to pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.

@@ -56,7 +56,7 @@ fn files_of_a_bucket_have_the_results_of_files() {
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
 
-    // One file is submitted first. When all files are submitted, it is known.
+    // One file is submitted first. When all files are submitted, this file is not queued again.
     let one = program.submit(&["--bucket", "s3://uploads", "00007.replay"]);
     assert_eq!(one.len(), 1, "{one:?}");
     let all = program.submit(&["--bucket", "s3://uploads/"]);

@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     /// Minimum number of ticks until an input takes effect [default: 1, or 0 in lockstep]
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(..=i64::from(DELAY_MAX)))]
     delay_min: Option<u16>,
-    /// Maximum number of ticks until an input takes effect; between the two, the delay follows the latency
+    /// Maximum number of ticks until an input takes effect; above --delay-min, the delay follows the latency
     #[arg(long, value_name = "TICKS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(..=i64::from(DELAY_MAX)))]
     delay_max: u16,
     /// Seconds for which the match waits for a player whose packets do not arrive; the same for all peers

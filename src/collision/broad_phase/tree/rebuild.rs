@@ -62,7 +62,7 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // After many relinks, or if the cost has grown by a quarter.
+        // Rebuilds after many relinks, or if the cost has grown by a quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }

@@ -314,8 +314,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height of an end of the incident edge after clipping by `past`, which is positive. `past` and `span`, the extent of
-/// the incident edge, are measured along the reference edge.
+/// Height of an end of the incident edge after clipping by `past`, if positive. `past` and `span`, the extent of the
+/// incident edge, are measured along the reference edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,

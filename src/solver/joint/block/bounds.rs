@@ -1,8 +1,8 @@
-//! Units with bounds in a block: limits, which may only push, and motors and springs of limited force.
+//! Units with bounds in a block: limits, whose impulses are not negative, and motors and springs of limited force.
 //!
 //! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
 //! the units without bounds, and holds active units beyond a bound at that bound, until no active unit is beyond a
-//! bound. In the first [`ROUNDS_MAX`] rounds, only those motors are held that are furthest beyond their bounds.
+//! bound. Among the motors, the first [`ROUNDS_MAX`] rounds hold only those that are furthest beyond their bounds.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -59,9 +59,9 @@ impl Block {
         }
     }
 
-    /// Activates motors, limits that would push if solved alone, and springs that would be within their bounds if
-    /// solved alone. Other limits get no impulse, and other springs are held at a bound. In the relax pass, springs
-    /// keep their impulses.
+    /// Activates motors, limits whose impulse would be positive if solved alone, and springs that would be within their
+    /// bounds if solved alone. Other limits get no impulse, and other springs are held at a bound. In the relax pass,
+    /// springs keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
@@ -86,8 +86,8 @@ impl Block {
 
     /// Deactivates units beyond a bound. Returns whether there were any.
     ///
-    /// With `furthest_only`, motors are deactivated only from half the largest excess: while a brake holds a strong
-    /// motor, the equations give both the same impulse, and only the brake should slip.
+    /// With `furthest_only`, a motor is deactivated only if its [`Unit::excess`] is at least half the largest one:
+    /// while a brake holds a strong motor, the equations give both the same impulse, and only the brake should slip.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {

@@ -36,8 +36,8 @@ const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 pub(in super::super) struct Candidate {
     /// The bodies of the joint, with the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows in a block: rows that hold the bodies, springs, limits, and motors along one direction. A joint
-    /// without such rows is not solved in a block.
+    /// Number of rows in a block. Springs, limits, motors along one direction and rows that hold the bodies count. A
+    /// joint without such rows is not solved in a block.
     pub(in super::super) rows: u32,
     /// Whether the joint has rows besides that of a motor.
     pub(in super::super) holds: bool,

@@ -24,7 +24,7 @@ const KICK_MAX: i64 = 1000 * ONE;
 /// The change of the torque of a force while its body rotates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Leverage {
-    /// A torque, or a spring between two points, whose change is left out.
+    /// No change: a torque, or a spring between two points, for which the change is neglected.
     None,
     /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios.
     AtPoint([Vec2<Ratio>; 2]),

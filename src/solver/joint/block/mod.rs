@@ -18,8 +18,8 @@
 //!
 //! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
 //! eigenvalue of its matrix is at least the smallest impulse scale, even if rows depend on each other, as in a loop of
-//! welds. Springs between points at long arms may depend on each other more closely, so that `matrix.rs` bounds the
-//! pivots. The relax pass adds [`EXCESS`] to the diagonal instead. `L` has 32 fraction bits.
+//! welds. With springs between points at long arms it may be smaller, so that `matrix.rs` bounds the pivots. In the
+//! relax pass, which has no impulse scales, [`EXCESS`] is added to the diagonal. `L` has 32 fraction bits.
 
 mod bounds;
 mod choice;

@@ -220,7 +220,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Target speed, at most that at which the limits may be approached (see `Parts::drive_within`).
+    /// Target speed, clamped to the speeds at which the limits may be approached (see `Parts::drive_within`).
     #[inline(always)]
     fn drive_target<L: Lanes<N>>(&self) -> L::Int {
         let zero = L::splat(0);

@@ -1,4 +1,4 @@
-//! Hinges in blocks (`joint/block`), which compute their impulses.
+//! Hinges in blocks. The block (`joint/block`) computes their impulses.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::context::{Pass, StepContext};
@@ -180,7 +180,7 @@ impl HingeSet {
         }
     }
 
-    /// Moves impulses to the block: those of the point along x and y, and that of the row on the angle.
+    /// Moves impulses to the block: along x and y at the point, and on the angle.
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let [x, y] = &mut blocked.batches[number].lambda;

@@ -191,7 +191,7 @@ fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
 }
 
-/// Largest length of a lever ratio, with which its average over a predicted rotation fits the format.
+/// Largest length of a lever ratio. Up to this length, its average over a predicted rotation fits the format.
 pub(super) const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].

@@ -145,7 +145,7 @@ fn reaching<L: Lanes<N>, const N: usize>(
     [gap_x, gap_y]: [L::Int; 2],
     factors: &Ints<N>,
 ) -> [L::Int; 2] {
-    /// Largest component, with which the length is below [`super::input::LENGTH_MAX`].
+    /// Largest component, so that the length is below [`super::input::LENGTH_MAX`].
     const REACH_MAX: Ratio = Ratio::lit("87");
     const SHIFT: i32 = shift(Step::FRAC_NBITS + FACTOR - Ratio::FRAC_NBITS);
     let factor = L::load(factors);

@@ -33,7 +33,7 @@ pub(super) fn write<G: Game>(
 ) -> CommandResult {
     let frames = Frames::of(&replay, arguments)?;
     if format == Format::Gif && frames.pace.ticks.saturating_mul(GIF_RATE_MAX) < frames.pace.tick_rate {
-        context.console.warning("more than 50 frames a second: most programs show such a GIF slowly");
+        context.console.warning("more than 50 frames a second: most programs show such a GIF too slowly");
     }
     let progress = Progress::new(context.console.is_terminal, frames.count);
     let mut camera = Camera::new(&mut replay, context.tool.view, arguments)?;

@@ -57,8 +57,8 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
 fn nothing(arguments: &Arguments) -> CommandError {
     let what = match (&arguments.body, &arguments.path) {
         (Some(id), _) => return CommandError::NoBody { id: id.clone() },
-        (None, Some(path)) => format!("field whose path begins with {path:?}"),
-        (None, None) => "field".into(),
+        (None, Some(path)) => format!("field whose path begins with {path:?} in this state"),
+        (None, None) => "field in this state".into(),
     };
     CommandError::NothingThere { what }
 }

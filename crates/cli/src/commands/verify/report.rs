@@ -55,8 +55,8 @@ pub(super) struct Needs {
 }
 
 impl Report {
-    /// `claims` are those of the trailer. `needs` are the versions that a file requires if this program cannot verify
-    /// it.
+    /// `claims` come from the trailer. `needs` are the versions that the file requires, if this program cannot verify
+    /// the file.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
         let mut text = verdict.to_string();
         if verdict.is_match() && !claims.is_empty() {

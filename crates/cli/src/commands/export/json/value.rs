@@ -1,4 +1,4 @@
-//! Any value as JSON. `serde_json` refuses maps whose keys are no text and integers of more than 64 bits.
+//! Any value as JSON. `serde_json` refuses integers of more than 64 bits, and maps whose keys are structs or tuples.
 
 use lockstep2d::inspect::{self, Field, fields};
 use serde::ser::{self, Serialize, Serializer};

@@ -36,8 +36,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis with 1 to `steps_max` steps. If `low` equals `high`, the range is extended to 0; if both are 0, to 0 to
-    /// 1.
+    /// An axis with 1 to `steps_max` steps. If `low` equals `high`, the range is extended to 0; if both are 0, it is
+    /// from 0 to 1.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
