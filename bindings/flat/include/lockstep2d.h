@@ -8,8 +8,8 @@
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
  * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER,
- * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write that number in
- * both cases; ls2d_match_next_packet only if the buffer for the address is long enough.
+ * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write the number needed
+ * even then. ls2d_match_next_packet writes the size of the packet only if the buffer for the address is long enough.
  *
  * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
  *
@@ -27,11 +27,11 @@ extern "C" {
 
 /* Result of a function: one of the LS2D_ codes below. */
 typedef int32_t ls2d_status;
-/* An object. */
+/* Handle of an object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | has no operands
- * that are floats, so that a float, which would be truncated, is an error of the compiler. */
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | refuses floats,
+ * which the conversion to int64_t would truncate without an error. */
 #define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / ((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
@@ -57,7 +57,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_SIZE 6
 /* An argument is out of its range, or the call is not possible at this time. */
 #define LS2D_VALUE 7
-/* The buffer is too short. The number of items needed was written, if the function writes it. */
+/* The buffer is too short. The number of items needed was written, if the function has a pointer for it. */
 #define LS2D_BUFFER 8
 /* A text is invalid, for example not UTF-8. */
 #define LS2D_TEXT 9
@@ -245,14 +245,14 @@ typedef uint64_t ls2d_joint;
 #define LS2D_UNVERIFIABLE 6
 /* Request: keep a copy of the state before `tick`. It replaces an older one for the same tick. */
 #define LS2D_REQUEST_SAVE 0
-/* Request: restore the copy of the state before `tick`. In a match, later copies are not requested again. */
+/* Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed. */
 #define LS2D_REQUEST_LOAD 1
 /* Request: simulate `tick` with the inputs. */
 #define LS2D_REQUEST_ADVANCE 2
 /* Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
  * hash of the current state to `ls2d_replay_check`. */
 #define LS2D_REQUEST_CHECKSUM 3
-/* Request: copies of states before `tick` are not needed. */
+/* Request: copies for ticks below `tick` are no longer needed. */
 #define LS2D_REQUEST_FORGET 4
 /* Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
  * ticks. */
@@ -420,9 +420,9 @@ typedef struct ls2d_config {
     uint32_t contact;
     /* Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
     uint32_t flags;
-    /* Stiffness of soft contacts in Hz, or share of the overlap corrected in each sub-step. */
+    /* Stiffness of soft contacts in Hz; for Baumgarte contacts, share of the overlap corrected in each sub-step. */
     ls2d_fx contact_stiffness;
-    /* Damping ratio of soft contacts, or overlap in metres that is not corrected. */
+    /* Damping ratio of soft contacts; for Baumgarte contacts, overlap in metres that is not corrected. */
     ls2d_fx contact_damping;
     /* Largest speed in m/s with which contacts push shapes apart. */
     ls2d_fx contact_push_speed;
@@ -512,7 +512,7 @@ typedef struct ls2d_body_info {
     ls2d_fx mass;
     /* Moment of inertia about the centre of mass in kg m². */
     ls2d_fx inertia;
-    /* The game's number. */
+    /* The number that the game stores with the body. */
     uint64_t user_data;
     /* Decay rate of the velocity, per second. */
     ls2d_fx linear_damping;
@@ -624,7 +624,7 @@ typedef struct ls2d_shape_def {
 } ls2d_shape_def;
 
 /* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
- * only with that flag, except that a pulley reads `length`. */
+ * only with that flag, except that a pulley always reads `length`. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -955,7 +955,7 @@ typedef struct ls2d_match_config {
     uint32_t history;
     /* Minimum number of final ticks whose inputs are kept. */
     uint32_t log_ticks;
-    /* Number of ticks from the effect of a join to the first tick of the peer. */
+    /* Number of ticks from the agreement that a peer joins to its first tick, in addition to three round trips. */
     uint32_t seat_lead;
     /* A peer that lags by at most this many ticks may have a seat. */
     uint32_t seat_within;
@@ -1100,11 +1100,12 @@ ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 /* Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID` at first. */
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
-/* Makes the links of a chain through some points: closed if `closed` is not 0, solid from the right only if
- * `one_sided` is not 0. The other properties are those of `base`. */
+/* Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
+ * first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
+ * those of `base`. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
-/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, as in a definition. Null
+/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Null
  * pointers are not written. At least one shape must have both an area and a density. */
 ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
 
@@ -1196,7 +1197,8 @@ ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *
 /* Changes the kind of a body. */
 ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
 
-/* Sets the mass of a body from a definition. The other fields have no effect. */
+/* Sets the mass of a body: from the definition if it has `LS2D_BODY_GIVEN_MASS`, otherwise from the body's shapes.
+ * Other fields of the definition have no effect. */
 ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Sets the number that the game stores with a body. */
@@ -1252,7 +1254,7 @@ ls2d_status ls2d_body_name(uint32_t world, ls2d_body id, uint8_t *name);
 /* Velocity in m/s of a body at a point of the world. */
 ls2d_status ls2d_body_velocity_at(uint32_t world, ls2d_body id, ls2d_fx x, ls2d_fx y, ls2d_vec2 *velocity);
 
-/* Definition of a shape and its body. */
+/* Definition of a shape, and handle of its body. Null pointers are not written. */
 ls2d_status ls2d_shape_get(uint32_t world, ls2d_shape id, ls2d_shape_def *def, ls2d_body *owner);
 
 /* An axis-aligned box around a shape, with a margin. */
@@ -1276,8 +1278,8 @@ ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 /* Force in N of a joint on body B in the last sub-step, and torque in N m about B's anchor. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Sets the anchors and angles of a definition for the current poses: the anchor at a point of the world, the axis
- * along a direction in the world. A direction of zero is the x axis. */
+/* Copies a definition, with anchors and angles for the current poses: both anchors are at a point of the world,
+ * the axis has a direction in the world (zero: the x axis). A gear, rack or pulley gets no position error. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
@@ -1297,8 +1299,8 @@ ls2d_status ls2d_events_contact_begin(uint32_t world, ls2d_contact_event *events
 /* Pairs of shapes that ceased to touch, sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
 
-/* Pairs of shapes that hit each other, sorted by shape A, then by shape B, if one of them has
- * `LS2D_SHAPE_HIT_EVENTS`. */
+/* Pairs of shapes that hit each other, if one of them has `LS2D_SHAPE_HIT_EVENTS`, sorted by shape A, then by
+ * shape B. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
 /* Shapes that began to overlap a sensor, sorted by `fraction`. */
@@ -1339,14 +1341,14 @@ ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
-/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world or
- * disabled. */
+/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is disabled or not in the
+ * world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
 
 /* ---- Characters ---- */
 
-/* Sets the defaults of a character with a shape of the given kind: slopes up to 45 degrees, no steps, and ground
- * that falls by up to 0.1 m in a tick. The caller sets the geometry. */
+/* Sets the defaults of a character with a shape of the given kind: it stands on slopes up to 45 degrees, climbs no
+ * steps, and follows ground that descends by up to 0.1 m in a tick. The caller sets the geometry. */
 ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 
 /* Sets the state of a character at rest in the air, at a position in metres. */
@@ -1414,8 +1416,9 @@ ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limi
 /* The current tick, and the number of ticks. Null pointers are not written. */
 ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
 
-/* Goes to a tick. If a checkpoint on the way differs, the result is `LS2D_RECORD`, and the timeline stays at that
- * tick. */
+/* Goes to a tick. If the replay cannot be played up to it (a checkpoint differs, inputs are not valid, or a limit
+ * is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to the
+ * tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable. */
 ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
 
 /* Goes forward by a tick. `LS2D_NONE` at the end. */
@@ -1458,7 +1461,7 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
  * the handle is 0, and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as bytes, and figures of the replay. Null pointers to figures are not written. */
+/* Name of the rules as a bytes object, and numbers that describe the replay. Pointers except `rules` may be null. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
 /* The setup of the game as bytes. */
@@ -1490,7 +1493,7 @@ ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
 /* The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
  * `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
- * `LS2D_RECORD` if the game has diverged from the file before that tick. */
+ * `LS2D_RECORD` if the game has diverged from the file at that tick or before. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
 /* Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
@@ -1549,8 +1552,8 @@ ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t
 /* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
-/* Numbers of ticks: `played` is the number of ticks played, `last` of ticks with final inputs, `confirmed` of
- * ticks played with final inputs. Null pointers are not written. */
+/* Numbers of ticks: `played` ticks were played, `last` ticks have final inputs, and `confirmed` ticks were played
+ * with final inputs. Null pointers are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
 /* Writes the bit mask of this peer's own seats. */
@@ -1566,8 +1569,8 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Requests an end of the match after a number of ticks. The request is sent two seconds before. Until a majority
- * has decided, other peers can get seats. */
+/* Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+ * majority has decided on the end, other peers can get seats. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Requests a pause, or, with 0, withdraws the request. */
