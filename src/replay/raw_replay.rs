@@ -69,7 +69,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         ))
     }
 
-    /// The game at the current tick.
+    /// The game at the current tick. Its state is wrong once a limit of work has been exceeded.
     #[must_use]
     pub fn game(&self) -> &G {
         &self.game

@@ -91,7 +91,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         Ok(VerifiedReplay { raw, ending, failed: None })
     }
 
-    /// The game at the current tick.
+    /// The game at the current tick. Its state is wrong once a limit of work has been exceeded.
     #[must_use]
     pub fn game(&self) -> &G {
         self.raw.game()

@@ -1,13 +1,17 @@
 //! A seek leads to the state that a playback without seeks has. In a part that has been played, a seek simulates at
 //! most two intervals, within a memory budget.
 
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::codec;
+use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
-use lockstep2d::math::Rng;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
+use lockstep2d::math::{Angle, Fx, Rng, Vec2};
 use lockstep2d::replay::{
-    LimitKind, Limits, Recording, SeekError, Step, Timeline, TimelineOptions, Verdict, VerifiedReplay,
+    LimitKind, Limits, RawReplay, Recording, SeekError, Step, Timeline, TimelineOptions, Verdict,
+    VerifiedReplay,
 };
+use lockstep2d::world::{BodyPose, Command};
 
 use crate::counter::{Counter, Input, Setup, add, inputs_at, like_its_counter, setup};
 use crate::forge::forge;
@@ -201,6 +205,44 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     }
 }
 
+/// The world counts its work during the step, so the step that exceeds the limit has begun.
+#[test]
+fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let floor = Polygon::rectangle(fx!(20), fx!(1)).unwrap();
+    let poses =
+        (0..20).map(|x| BodyPose { position: Vec2::new(Fx::from(x - 10), fx!(4)), angle: Angle::ZERO });
+    let commands = vec![
+        Command::Spawn { body: BodyDef::fixed(), shapes: vec![ShapeDef::new(floor)] },
+        Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![ball], poses: poses.collect() },
+    ];
+    let setup = SandboxSetup { commands, ..SandboxSetup::default() };
+    let mut recording = Recording::<Sandbox>::start(&setup, 60).unwrap();
+    (0..120).for_each(|_| recording.step(&[vec![]]).unwrap());
+    let file = recording.finish().unwrap();
+
+    let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    let (mut hashes, mut works) = (vec![replay.game().state_hash()], vec![]);
+    let mut before = replay.work();
+    while replay.step() == Ok(Step::Ticked) {
+        hashes.push(replay.game().state_hash());
+        works.push(replay.work() - before);
+        before = replay.work();
+    }
+    let most = *works.iter().max().unwrap();
+    let last = works.iter().position(|&work| work == most).unwrap();
+    assert!(last > 30, "the step in which the balls land costs most");
+    let limits = Limits { tick_work: most - 1, ..Limits::default() };
+    let mut timeline = Timeline::<Sandbox>::open(&file, &TimelineOptions::default(), &limits).unwrap();
+    assert!(matches!(timeline.seek(120), Err(SeekError::Replay(Verdict::LimitExceeded { .. }))));
+    assert_eq!(timeline.tick(), last as u64);
+    assert_eq!(timeline.game().state_hash(), hashes[last]);
+    for tick in [last, 3, last - 1, last] {
+        timeline.seek(tick as u64).unwrap();
+        assert_eq!(timeline.game().state_hash(), hashes[tick]);
+    }
+}
+
 /// A hidden value affects the sum and is not saved.
 struct Forgetful {
     counter: Counter,
@@ -235,6 +277,10 @@ fn a_game_that_does_not_save_all_of_itself_is_found_out() {
     let mut timeline = open::<Forgetful>(&file, 20, 1 << 20);
     timeline.seek(100).unwrap();
     assert_eq!(timeline.seek(55), Err(SeekError::Forgetful { tick: 50 }));
+    // The timeline does not show the wrong state as that of its tick.
+    if timeline.seek(50).is_ok() {
+        assert_eq!(timeline.game().state_hash(), hashes::<Forgetful>(&file)[50]);
+    }
 }
 
 #[test]

@@ -147,6 +147,8 @@ pub struct Timeline<'a, G: Game> {
     simulated: u64,
     /// The first tick that cannot be reached, and the reason.
     failed: Option<(u64, Verdict)>,
+    /// Whether the state of the game is not that of the current tick.
+    is_wrong: bool,
 }
 
 impl<'a, G: Game> Timeline<'a, G> {
@@ -163,7 +165,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         let start = Keyframe { position, save: codec::encode(&replay.game().save()) };
         let keyframes = Keyframes::new(start, interval, options.bytes.min(KEYFRAMES_BYTES_MAX));
         let (trail, failed) = (Trail::default(), None);
-        Ok(Timeline { file, replay, keyframes, trail, played: 0, simulated: 0, failed })
+        Ok(Timeline { file, replay, keyframes, trail, played: 0, simulated: 0, failed, is_wrong: false })
     }
 
     /// The game at the current tick.
@@ -312,12 +314,13 @@ impl<'a, G: Game> Timeline<'a, G> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
         let from = kept.map_or(0, |(position, _)| position.tick).max(frame.position.tick);
-        if (from..=tick).contains(&self.tick()) {
+        if !self.is_wrong && (from..=tick).contains(&self.tick()) {
             return Ok(());
         }
         match kept.filter(|(position, _)| position.tick == from) {
             Some((position, save)) => {
                 self.replay.go(save, position.clone());
+                self.is_wrong = false;
                 Ok(())
             }
             None => self.go_to_keyframe(tick),
@@ -332,6 +335,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         let (back, here) = (self.game().save(), self.replay.position().clone());
         self.replay.go(&save, position.clone());
         if self.replay.agrees() {
+            self.is_wrong = false;
             return Ok(());
         }
         self.replay.go(&back, here);
@@ -356,9 +360,15 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.simulated += now - before;
         if let Err(verdict) = result {
             if now <= self.played && matches!(verdict, Verdict::Diverged { .. }) {
+                self.is_wrong = true;
                 return Err(SeekError::Forgetful { tick: now });
             }
             self.failed = Some((before + 1, verdict.clone()));
+            if now == before && matches!(verdict, Verdict::LimitExceeded { .. }) {
+                // The step may have begun. If the way back fails as well, the next seek tries again.
+                self.is_wrong = true;
+                let _ = self.seek(before);
+            }
             return Err(SeekError::Replay(verdict));
         }
         if before <= self.played {
