@@ -45,8 +45,8 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest payload of an IPv4 packet of 1280 bytes: the headers of IPv4 and UDP have at least 28 bytes.
-    const PAYLOAD_MAX: usize = 1280 - 28;
+    /// Largest datagram of UDP. On Windows a datagram longer than the buffer is an error, like a failed socket.
+    const DATAGRAM_MAX: usize = 1 << 16;
 
     /// A UDP socket.
     ///
@@ -104,7 +104,7 @@ mod udp {
             let socket = UdpSocket::bind(address)?;
             socket.set_nonblocking(true)?;
             let is_v6 = socket.local_addr()?.is_ipv6();
-            Ok(Udp { socket, buffer: vec![0; PAYLOAD_MAX + 1], is_v6 })
+            Ok(Udp { socket, buffer: vec![0; DATAGRAM_MAX], is_v6 })
         }
 
         /// The local address of the socket.

@@ -71,10 +71,7 @@ pub(super) enum Phase {
         cookie: u64,
         next_at: u64,
     },
-    Downloading {
-        nonce: u64,
-        download: Download,
-    },
+    Downloading(Download),
     InMatch(Box<Session>),
     /// Waits for [`Endpoint::ask`].
     Refused,
@@ -127,6 +124,8 @@ pub struct Endpoint {
     pub(super) secret: Secret,
     pub(super) contact: Option<Address>,
     pub(super) phase: Phase,
+    /// Number of requests to join.
+    attempts: u64,
     pub(super) routes: Routes,
     pub(super) guests: Guests,
     pub(super) contacts: Contacts,
@@ -176,6 +175,7 @@ impl Endpoint {
             secret: Secret(secret),
             contact,
             phase,
+            attempts: 0,
             routes: Routes::default(),
             guests: Guests::default(),
             contacts: Contacts::default(),
@@ -220,15 +220,10 @@ impl Endpoint {
     /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
-        let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());
+        // Each attempt has another nonce, so that the contact begins anew as well.
+        self.attempts = self.attempts.wrapping_add(1);
+        let nonce = token(self.secret, self.me, &contact).wrapping_add(self.attempts);
         self.phase = Phase::Asking { nonce, cookie: 0, next_at: 0 };
-    }
-
-    fn packets_seed(&self) -> u64 {
-        match self.phase {
-            Phase::Asking { nonce, .. } | Phase::Downloading { nonce, .. } => nonce,
-            Phase::InMatch(_) | Phase::Refused => 1,
-        }
     }
 
     /// The session, once this peer takes part.
@@ -252,7 +247,7 @@ impl Endpoint {
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         match &self.phase {
-            Phase::Downloading { download, .. } => Some(download.progress()),
+            Phase::Downloading(download) => Some(download.progress()),
             _ => None,
         }
     }
@@ -309,7 +304,7 @@ impl Endpoint {
                     }
                 }
             }
-            Phase::Downloading { download, .. } => {
+            Phase::Downloading(download) => {
                 if now >= download.moved_at.saturating_add(DOWNLOAD_PATIENCE) {
                     if let Some(contact) = self.contact {
                         self.ask(contact);

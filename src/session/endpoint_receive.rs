@@ -72,7 +72,7 @@ impl Endpoint {
                 if own && length <= STATE_BYTES_MAX {
                     self.routes.prove(sender, from, now);
                     if let Some(download) = Download::new(now, hash, length) {
-                        self.phase = Phase::Downloading { nonce, download };
+                        self.phase = Phase::Downloading(download);
                     }
                 }
             }
@@ -139,7 +139,7 @@ impl Endpoint {
     }
 
     fn take_chunk(&mut self, now: u64, hash: u64, index: u32, bytes: &[u8]) {
-        let Phase::Downloading { download, .. } = &mut self.phase else { return };
+        let Phase::Downloading(download) = &mut self.phase else { return };
         if download.hash == hash {
             download.take(now, index, bytes);
         }
@@ -150,7 +150,7 @@ impl Endpoint {
 
     fn begin(&mut self, now: u64) {
         let refused = Phase::Refused;
-        let Phase::Downloading { download, .. } = core::mem::replace(&mut self.phase, refused) else {
+        let Phase::Downloading(download) = core::mem::replace(&mut self.phase, refused) else {
             return;
         };
         let start = download.finish().and_then(|bytes| StartState::decode(&bytes).ok());

@@ -130,8 +130,8 @@ impl HostReplay {
     fn check(&mut self, hash: StateHash) -> Outcome {
         let Some(index) = self.checkpoint() else { return Ok(()) };
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
-        self.compared = Some(tick);
         if checkpoint_hash(hash, inputs) == stored {
+            self.compared = Some(tick);
             // Checkpoints after a skipped one do not count, because the skipped one has not been compared.
             self.equal += usize::from(index == self.equal);
             return Ok(());
@@ -140,6 +140,7 @@ impl HostReplay {
             let why = "saving and loading this game loses state";
             return Err(Failure::new(Status::Record, format!("the state of tick {tick} has changed: {why}")));
         }
+        self.compared = Some(tick);
         let last_equal = self.equal.checked_sub(1).and_then(|last| self.checkpoints.get(last));
         let last_equal = last_equal.map(|checkpoint| checkpoint.tick);
         self.failed.get_or_insert(Verdict::Diverged { last_equal, first_different: tick });

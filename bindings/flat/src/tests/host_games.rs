@@ -241,7 +241,9 @@ fn a_game_whose_saves_lose_state_is_told() {
     let mut player = Player::new(&file);
     assert_eq!(player.seek(200), Status::None as i32);
     player.saves.values_mut().for_each(|state| state.sums[2] ^= 1);
-    assert_eq!(player.seek(130), Status::Record as i32);
-    assert!(crate::status::last_text().contains("loses state"), "{}", crate::status::last_text());
+    for _ in 0..2 {
+        assert_eq!(player.seek(130), Status::Record as i32);
+        assert!(crate::status::last_text().contains("loses state"), "{}", crate::status::last_text());
+    }
     done(ls2d_free(player.replay));
 }
