@@ -56,27 +56,62 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
+/// A hub with motors of very different strengths.
+fn motors_of_hub(count: i64) -> Case<'static> {
+    let limbs = u32::try_from(count).expect("a number");
+    let mut commands =
+        vec![each(BodyDef::dynamic(), square(fx!(0.5)), grid(count + 1, fx!(2)).take(limbs as usize + 1))];
+    for power in 0..8u32 {
+        let motor = Revolute::new().motor(fx!(50), fx!(0.001) * 4i64.pow(power));
+        let joint = JointDef::new(body(0), body(1), motor).anchor_b((fx!(2), fx!(0)));
+        let ends = (1..=limbs).filter(|limb| limb % 8 == power).map(|limb| (body(0), body(limb)));
+        commands.push(Command::AddJointEach { joint, ends: ends.collect() });
+    }
+    (setup(commands, still()), 3, Box::new(|_| Vec::new()))
+}
+
 /// Many hinges at one body have motors of very different strength that all slip. The block solver needs many rounds to
 /// find the motors at their limit.
 #[test]
 fn motors_in_blocks() {
-    let case = |count: i64| -> Case<'_> {
-        let limbs = u32::try_from(count).expect("a number");
-        let mut commands = vec![each(
-            BodyDef::dynamic(),
-            square(fx!(0.5)),
-            grid(count + 1, fx!(2)).take(limbs as usize + 1),
-        )];
-        for power in 0..8u32 {
-            let motor = Revolute::new().motor(fx!(50), fx!(0.001) * 4i64.pow(power));
-            let joint = JointDef::new(body(0), body(1), motor).anchor_b((fx!(2), fx!(0)));
-            let ends = (1..=limbs).filter(|limb| limb % 8 == power).map(|limb| (body(0), body(limb)));
-            commands.push(Command::AddJointEach { joint, ends: ends.collect() });
-        }
-        (setup(commands, still()), 3, Box::new(|_| Vec::new()))
-    };
-    let wrong = too_expensive("motors in blocks", 64, case);
+    let wrong = too_expensive("motors in blocks", 64, motors_of_hub);
     assert!(wrong.is_none(), "{wrong:#?}");
+}
+
+#[test]
+fn motors_in_blocks_with_many_iterations() {
+    let case = |count: i64| -> Case<'_> {
+        let (world, ticks, script) = motors_of_hub(count);
+        let mut config = world.config;
+        config.solver.iterations = 16;
+        (setup(world.commands, config), ticks, script)
+    };
+    let wrong = too_expensive("motors in blocks, 16 iterations", 64, case);
+    assert!(wrong.is_none(), "{wrong:#?}");
+}
+
+/// Elastic shapes that hit at the same time are solved against each other in many passes.
+#[test]
+fn elastic_crowds() {
+    let mut wrong = Vec::new();
+    for (name, gap) in [("apart", fx!(1.001)), ("touching", fx!(1)), ("overlapping", fx!(0.3))] {
+        for iterations in [1, 16] {
+            let case = |count: i64| -> Case<'_> {
+                let square = square(fx!(0.5)).restitution(fx!(1)).restitution_threshold(fx!(0));
+                let mut commands = vec![each(BodyDef::dynamic(), square, grid(count, gap))];
+                commands.extend((0..u32::try_from(count * count).expect("a number")).map(|slot| {
+                    let velocity = |bit: u32| if slot >> bit & 1 == 0 { fx!(20) } else { fx!(-20) };
+                    let velocity = Vec2::new(velocity(0), velocity(1));
+                    Command::SetVelocity { body: body(slot), velocity, angular_velocity: fx!(1) }
+                }));
+                let mut config = still();
+                config.solver.iterations = iterations;
+                (setup(commands, config), 4, Box::new(|_| Vec::new()))
+            };
+            wrong.extend(too_expensive(&format!("elastic squares {name}, {iterations} iterations"), 8, case));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]

@@ -27,6 +27,14 @@ struct Entry {
     announced: bool,
 }
 
+/// An announced event whose tick was rolled back.
+#[derive(Clone, Copy, Debug)]
+struct Withdrawn {
+    event: LoggedEvent,
+    /// Tick of the [`PredictedEvent`](crate::PredictedEvent).
+    announced_tick: u64,
+}
+
 /// Largest number of ticks by which a rollback may move an event without making it a new event.
 const SAME_EVENT_TICKS: u64 = 16;
 
@@ -39,7 +47,7 @@ pub(crate) struct StepLog {
     /// Unconfirmed events, in order, with ticks since the start of the epoch.
     pending: VecDeque<Entry>,
     /// Events that were announced, and whose ticks were rolled back. They have not happened again.
-    withdrawn: Vec<LoggedEvent>,
+    withdrawn: Vec<Withdrawn>,
     pub(crate) before: Poses,
     pub(crate) after: Poses,
     is_after_stale: bool,
@@ -56,6 +64,14 @@ pub(crate) struct StepLog {
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,
+}
+
+impl Entry {
+    /// The event, if it was announced. `base` is the tick at which its epoch begins.
+    fn withdrawn(self, base: u64) -> Option<Withdrawn> {
+        let Entry { event, announced } = self;
+        announced.then_some(Withdrawn { event, announced_tick: base + event.tick })
+    }
 }
 
 impl StepLog {
@@ -95,7 +111,7 @@ impl StepLog {
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
             let same = withdrawn.iter().position(|other| {
-                other.is_alike(&event) && other.tick.abs_diff(event.tick) <= SAME_EVENT_TICKS
+                other.event.is_alike(&event) && other.event.tick.abs_diff(event.tick) <= SAME_EVENT_TICKS
             });
             let announced = same.map(|place| withdrawn.remove(place)).is_some();
             pending.push_back(Entry { event, announced });
@@ -116,7 +132,8 @@ impl StepLog {
         self.replayed = self.replayed.max(u32::try_from(back).unwrap_or(u32::MAX));
         while self.pending.back().is_some_and(|entry| entry.event.tick > self.ticks) {
             let last = self.pending.pop_back();
-            self.withdrawn.extend(last.filter(|entry| entry.announced).map(|entry| entry.event));
+            let base = self.base();
+            self.withdrawn.extend(last.and_then(|entry| entry.withdrawn(base)));
         }
         if !self.is_after_stale {
             let exists = |body| world.is_some_and(|world| world.body(body).is_some());
@@ -127,17 +144,16 @@ impl StepLog {
 
     /// Begins an epoch at a loaded state. Returns 0, because this load does not count as a rollback.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
+        let old_base = self.base();
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);
         self.epoch = u32::try_from(self.bases.len() - 1).unwrap_or(u32::MAX);
         if self.suspended_at.is_some() {
             return 0;
         }
-        for entry in self.pending.drain(..).filter(|entry| entry.announced) {
-            self.withdrawn.push(entry.event);
-        }
+        self.withdrawn.extend(self.pending.drain(..).filter_map(|entry| entry.withdrawn(old_base)));
         // In the new epoch, withdrawn events count as events of tick 0.
-        self.withdrawn.iter_mut().for_each(|event| event.tick = 0);
+        self.withdrawn.iter_mut().for_each(|withdrawn| withdrawn.event.tick = 0);
         (self.shown, self.shown_again) = (None, None);
         0
     }
@@ -211,13 +227,16 @@ impl StepLog {
 
     /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
     pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
-        let (base, played) = (self.base(), self.ticks);
-        let is_over = |event: &LoggedEvent| event.tick + SAME_EVENT_TICKS < played;
-        let (over, open) = self.withdrawn.iter().partition(|event| is_over(event));
+        let played = self.ticks;
+        let is_over = |withdrawn: &Withdrawn| withdrawn.event.tick + SAME_EVENT_TICKS < played;
+        let (over, open): (Vec<_>, _) = self.withdrawn.iter().partition(|withdrawn| is_over(withdrawn));
         self.withdrawn = open;
-        let mut over: Vec<LoggedEvent> = over;
-        over.iter_mut().for_each(|event| event.tick += base);
-        over
+        over.into_iter()
+            .map(|Withdrawn { event, announced_tick }: Withdrawn| LoggedEvent {
+                tick: announced_tick,
+                ..event
+            })
+            .collect()
     }
 
     /// Takes the events of the first `ticks` ticks, which are final.

@@ -4,7 +4,7 @@ use bevy::math::Quat;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
 use bevy::prelude::{
-    Added, Commands, DetectChanges, Entity, MessageWriter, Query, Real, Res, ResMut, Time, Transform,
+    Commands, DetectChanges, Entity, MessageWriter, Query, Real, Res, ResMut, Time, Transform,
 };
 use lockstep2d::body::BodyId;
 use lockstep2d::world::World;
@@ -52,13 +52,13 @@ pub(crate) fn write_views<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     mut views: ResMut<BodyViews>,
     (settings, time): (Res<LockstepSettings>, Res<Time<Real>>),
-    fresh: Query<(Entity, &BodyView), Added<BodyView>>,
+    all: Query<(Entity, &BodyView)>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Entities that the game has prepared as views. Entities that the plugin spawned in the last frame are excluded.
+    // Entities that the game has prepared as views.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
-        fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
+        all.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if lockstep.is_added() {
         // The game was replaced. Views prepared for the new game are not in the table, so they are kept.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());

@@ -11,8 +11,8 @@ use crate::smoothing::Offset;
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
-/// If this component is added to an entity while there is no game, or in the frame in which the body appears, that
-/// entity becomes the view.
+/// If this component is added to an entity while the body has no view, that entity becomes the view when the body
+/// appears.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A rollback or a seek may
 /// replace a body by another body. The view is kept if both have the same id, kind, user data and shapes.

@@ -96,6 +96,32 @@ fn the_views_of_bodies_are_kept_through_rollbacks() {
     assert_eq!(run(Lockstep::sync_test(&Setup::default(), 12).unwrap()), births);
 }
 
+#[test]
+fn an_entity_becomes_the_view_of_a_body_that_appears_later() {
+    let bodies = |app: &App| -> Vec<_> {
+        let lockstep = app.world().resource::<Lockstep<Arena>>();
+        lockstep.world().unwrap().bodies().map(|(body, _)| body).collect()
+    };
+    let mut first = app(local(), 3, TICK);
+    while tick(&first) < 30 {
+        first.update();
+    }
+    let early = bodies(&first);
+    while bodies(&first).iter().all(|body| early.contains(body)) {
+        first.update();
+    }
+    let late = bodies(&first).into_iter().find(|body| !early.contains(body)).unwrap();
+
+    let mut again = app(local(), 3, TICK);
+    again.update();
+    let prepared = again.world_mut().spawn(BodyView::new(late)).id();
+    while tick(&again) < tick(&first) {
+        again.update();
+    }
+    assert_eq!(again.world().resource::<BodyViews>().entity(late), Some(prepared));
+    check_views(&mut again);
+}
+
 #[derive(Resource, Default)]
 struct Births(u32);
 

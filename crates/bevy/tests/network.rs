@@ -124,6 +124,7 @@ fn check_events(players: &[Player], end: u64) {
     for player in &players[..2] {
         // Predicted events that were not retracted are confirmed, except near the end of the compared ticks.
         let heard = player.heard();
+        assert!(heard.retracted.iter().all(|event| heard.predicted.contains(event)), "with the same tick");
         let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
         let predicted = heard.predicted.len() - heard.retracted.len();
         assert!(predicted >= confirmed && predicted - confirmed < 40, "{predicted} {confirmed}");

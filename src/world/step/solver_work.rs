@@ -3,7 +3,7 @@
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units in each sub-step of a joint that is solved in a block. A full block of 96 rows factors its matrix for the
+/// Work units in each iteration of a joint that is solved in a block. A full block of 96 rows factors its matrix for the
 /// bias pass and for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
@@ -17,10 +17,11 @@ pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> 
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));
     let solved = pair_work(pairs, bodies).saturating_sub(pair_work(pairs_before, bodies));
-    let solved = solved.saturating_mul(u64::from(sub_steps) * u64::from(iterations));
+    let rounds = u64::from(sub_steps) * u64::from(iterations);
+    let solved = solved.saturating_mul(rounds);
     let found = pairs.saturating_sub(pairs_before).saturating_mul(NEW_PAIR_WORK + NARROW_PHASE_WORK);
     let blocked = count(scratch.solver.blocked_joint_count()).saturating_mul(BLOCKED_JOINT_WORK);
-    let blocked = blocked.saturating_mul(sub_steps.into());
+    let blocked = blocked.saturating_mul(rounds);
     scratch.meter.spend(solved.saturating_add(found).saturating_add(blocked))
 }
 
