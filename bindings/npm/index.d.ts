@@ -524,7 +524,8 @@ declare class Edits extends Handle {
     /** An angular impulse in N m s: changes the angular velocity at once. */
     applyAngularImpulse(body: BodyId, impulse: Num): void;
     /** Sets the velocity of the centre of mass in m/s, and the angular velocity in rad/s (0 by default). Throws
-     * `WRONG_KIND` for a fixed body, and `SPEED` above the world's `speedMax`. */
+     * `WRONG_KIND` for a fixed body, and `SPEED` if the speed, or the angular velocity times the radius of gyration,
+     * exceeds the world's `speedMax`. */
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
     /** Moves the origin of a body at once to a position in metres, with an angle (0 by default). */
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;

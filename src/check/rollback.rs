@@ -44,7 +44,8 @@ impl<G: Game> Past<G> {
         if !now.options.is_due(now.tick) {
             return Ok(());
         }
-        for (depth, guess) in rollbacks(now.options.depths, depth_max, now.tick) {
+        let turn = now.tick / u64::from(now.options.every.max(1));
+        for (depth, guess) in rollbacks(now.options.depths, depth_max, turn) {
             let last = self.moments.len() - 1;
             // Near the start, fewer states are recorded.
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
@@ -92,20 +93,21 @@ impl<G: Game> Past<G> {
     }
 }
 
-fn rollbacks(depths: Depths, depth_max: u32, tick: u64) -> Vec<Rollback> {
+/// The rollbacks at a tick. `turn` counts the ticks with rollbacks.
+fn rollbacks(depths: Depths, depth_max: u32, turn: u64) -> Vec<Rollback> {
     let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
     match depths {
         Depths::Each => (1..=depth_max).flat_map(each).collect(),
         Depths::InTurn => {
-            let depth = (1..=depth_max).cycle().nth(remainder(tick, depth_max));
-            let guess = Guess::ALL[remainder(tick, 3)];
+            let depth = (1..=depth_max).nth(remainder(turn, depth_max));
+            let guess = Guess::ALL[remainder(turn / u64::from(depth_max.max(1)), 3)];
             depth.map(|depth| (depth, guess)).into_iter().collect()
         }
     }
 }
 
-fn remainder(tick: u64, of: u32) -> usize {
-    usize::try_from(tick % u64::from(of.max(1))).unwrap_or(0)
+fn remainder(turn: u64, of: u32) -> usize {
+    usize::try_from(turn % u64::from(of.max(1))).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -117,11 +119,14 @@ mod tests {
     #[test]
     fn every_rollback_has_its_turn() {
         let name = |(depth, guess): Rollback| (depth, Guess::ALL.iter().position(|one| *one == guess));
-        let in_turn: BTreeSet<_> =
-            (0..24).flat_map(|tick| rollbacks(Depths::InTurn, 8, tick)).map(name).collect();
-        let each: BTreeSet<_> = rollbacks(Depths::Each, 8, 5).into_iter().map(name).collect();
-        assert_eq!(in_turn, each);
-        assert_eq!(each.len(), 24);
+        for depth_max in 1..=9 {
+            let turns = 0..3 * u64::from(depth_max);
+            let in_turn: BTreeSet<_> =
+                turns.flat_map(|turn| rollbacks(Depths::InTurn, depth_max, turn)).map(name).collect();
+            let each: BTreeSet<_> = rollbacks(Depths::Each, depth_max, 5).into_iter().map(name).collect();
+            assert_eq!(in_turn, each);
+            assert_eq!(each.len(), 3 * depth_max as usize);
+        }
         assert!(rollbacks(Depths::InTurn, 0, 5).is_empty());
     }
 }

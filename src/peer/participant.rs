@@ -221,7 +221,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
     /// # Errors
-    /// [`PeerError`] if the inputs cannot be issued, or the game or its replay cannot continue.
+    /// [`PeerError`] if there is not one input for each own seat, an input cannot be encoded, or the game or its replay
+    /// cannot continue. Inputs that are not due yet are no error: the result is `false`.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
         let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);

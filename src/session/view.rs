@@ -65,7 +65,8 @@ pub(super) struct Join {
 /// A step from one view to the next, proposed or decided.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Change {
-    /// First tick that the change may affect. The ticks before it are final.
+    /// First tick that the change may affect. All final ticks lie before it. Once the change is decided, all ticks
+    /// before it are final.
     pub(super) cut: Tick,
     /// First tick that is not played; `None` while no end is decided.
     pub(super) end: Option<Tick>,

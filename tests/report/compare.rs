@@ -65,8 +65,8 @@ fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     Some((field, explanation.bit))
 }
 
-/// State after the tick of a flip. A rolling ball may move on equally whether its velocity or its spin was changed, and
-/// no comparison can tell which.
+/// Hash of the state after the tick of a flip. Flips with the same effect are recognised by it: a changed velocity of a
+/// rolling ball may lead to the same state as a changed spin, and then no comparison can tell which of them it was.
 fn state_after(seed: u64, flip: Flip) -> StateHash {
     let mut peer = Peer::new(seed, Some(flip));
     while peer.tick < flip.tick {

@@ -1222,7 +1222,8 @@ ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 /* Sets the gravity in m/s². */
 ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
 
-/* Changes the settings of a world, but not its limits. */
+/* Replaces the settings of a world. Refused as a whole if a limit differs from that of the world. A recording
+ * refuses another tick rate as well. */
 ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
 
 /* Applies impulses away from a point. */

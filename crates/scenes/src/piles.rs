@@ -114,7 +114,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
             })
             .collect();
         let rounding = if rng.below(3) == 0 { rng.range(fx!(0.02), fx!(0.1)) } else { Fx::ZERO };
-        // Thin polygons are drawn again, because they are hard to see.
+        // Rejects thin polygons, which are hard to see. Another one is then generated.
         let wide_enough = |polygon: &Polygon| {
             polygon.vertices().iter().zip(polygon.normals()).all(|(&vertex, &normal)| {
                 let depth = |other: &Vec2<lockstep2d::math::Length>| -> lockstep2d::math::Length {

@@ -41,12 +41,13 @@ enum Turn {
     Concave,
 }
 
+/// What a link does with the normal that it and the shape would have without the rest of the chain.
 enum Verdict {
-    /// The link pushes along the normal.
+    /// The link pushes along it.
     Own,
-    /// The chain allows the normal, and a neighbour pushes along it.
+    /// The chain allows it, but a neighbour pushes along it.
     Neighbour,
-    /// The normal does not belong to this link.
+    /// It does not belong to this link.
     Leave,
     /// The link pushes along its own normal instead.
     Snap,

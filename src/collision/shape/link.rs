@@ -73,7 +73,7 @@ impl Link {
         if orientation(p, q, r) == Orientation::CounterClockwise {
             return own || other;
         }
-        // The line of the neighbour does not decide beyond the neighbour's ends.
+        // The line of the neighbour counts only between the perpendiculars at the neighbour's ends.
         let stretch = to - from;
         let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
         own && (other || !beside)

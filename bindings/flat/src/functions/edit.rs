@@ -303,7 +303,8 @@ api! {
         edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
     }
 
-    /// Changes the settings of a world, but not its limits.
+    /// Replaces the settings of a world. Refused as a whole if a limit differs from that of the world. A recording
+    /// refuses another tick rate as well.
     fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
         edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
     }
