@@ -1,5 +1,7 @@
 //! [`Lockstep`]: the game and its driver, in one resource.
 
+use core::sync::atomic::{AtomicU64, Ordering};
+
 use bevy::prelude::Resource;
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{Peer, PeerDesync, PeerEvent, PeerIdentity, PeerOptions, Transport};
@@ -33,6 +35,8 @@ pub enum DriverKind {
 /// The game can be changed only through [`Inputs`]: other changes would be missing on other machines and in the replay.
 #[derive(Resource)]
 pub struct Lockstep<G: LockstepGame> {
+    /// Distinguishes this value from others of the program: a resource may be replaced within a frame.
+    number: u64,
     driver: Driver<G>,
     is_paused: bool,
     /// Number of ticks to be played although the game is paused.
@@ -44,7 +48,9 @@ type AnyPeer<G> = Peer<Observed<G>, AnyTransport>;
 
 impl<G: LockstepGame> Lockstep<G> {
     fn new(driver: Driver<G>) -> Self {
-        Lockstep { driver, is_paused: false, single_steps: 0, failure: None }
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        Lockstep { number, driver, is_paused: false, single_steps: 0, failure: None }
     }
 
     /// A game whose players are all at this machine, recorded for [`Lockstep::take_replay`].
@@ -302,6 +308,10 @@ impl<G: LockstepGame> Lockstep<G> {
 
     pub(crate) fn next_event(&mut self) -> Option<PeerEvent> {
         self.peer_mut().and_then(Peer::next_event)
+    }
+
+    pub(crate) const fn number(&self) -> u64 {
+        self.number
     }
 
     pub(crate) fn observed(&self) -> &Observed<G> {

@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use bevy::app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy::prelude::{
-    IntoScheduleConfigs, Reflect, ReflectResource, Res, Resource, SystemSet, resource_exists,
+    IntoScheduleConfigs, Reflect, ReflectResource, Res, Resource, SystemSet, not, resource_exists,
     resource_removed,
 };
 
@@ -14,7 +14,7 @@ use crate::events::{ConfirmedEvent, MatchEvent, PredictedEvent, RetractedEvent};
 use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
-use crate::systems::{remove_views, send_events, step, write_views};
+use crate::systems::{clear_status, remove_views, send_events, step, write_views};
 use crate::views::{BodyView, BodyViews};
 
 /// Plays the resource [`Lockstep<G>`] while there is one, shows its bodies as views, and sends its events. An app can
@@ -139,6 +139,7 @@ impl<G: LockstepGame> Plugin for LockstepPlugin<G> {
                 RunFixedMainLoop,
                 (
                     step::<G>.in_set(Step).run_if(resource_exists::<Lockstep<G>>),
+                    clear_status.in_set(Step).run_if(not(resource_exists::<Lockstep<G>>)),
                     (
                         write_views::<G>.run_if(resource_exists::<Lockstep<G>>),
                         remove_views.run_if(resource_removed::<Lockstep<G>>),

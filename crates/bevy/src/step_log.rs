@@ -35,6 +35,13 @@ struct Withdrawn {
     announced_tick: u64,
 }
 
+/// A position to return to: see [`StepLog::return_to`].
+#[derive(Debug)]
+pub(crate) struct Mark {
+    stamp: Stamp,
+    pending: VecDeque<Entry>,
+}
+
 /// Largest number of ticks by which a rollback may move an event without making it a new event.
 const SAME_EVENT_TICKS: u64 = 16;
 
@@ -183,6 +190,19 @@ impl StepLog {
         if let Some(Stamp { epoch, ticks }) = self.suspended_at.take() {
             (self.epoch, self.ticks) = (epoch, ticks);
         }
+    }
+
+    /// The position and the unconfirmed events.
+    pub(crate) fn mark(&self) -> Mark {
+        Mark { stamp: self.stamp(), pending: self.pending.clone() }
+    }
+
+    /// Returns to a mark, after the driver has restored its state.
+    pub(crate) fn return_to(&mut self, mark: Mark, world: Option<&World>) {
+        let Mark { stamp: Stamp { epoch, ticks }, pending } = mark;
+        (self.epoch, self.ticks, self.pending) = (epoch, ticks, pending);
+        self.withdrawn.clear();
+        self.refresh(world);
     }
 
     /// Continues at another tick, without events. Views jump there.

@@ -55,12 +55,12 @@ pub(crate) fn write_views<G: LockstepGame>(
     all: Query<(Entity, &BodyView)>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Entities that the game has prepared as views.
+    // Entities that the game has prepared as views. Views of a former game are not among them.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         all.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
-    if lockstep.is_added() {
-        // The game was replaced. Views prepared for the new game are not in the table, so they are kept.
+    if views.begin_game(lockstep.number()) {
+        // The game is new. Views prepared for it are not in the table, so they are kept.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
     }
     let world = lockstep.world();
@@ -161,6 +161,11 @@ fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> 
 fn write_transform(transform: &mut Transform, pose: DrawnPose, scale: f32) {
     (transform.translation.x, transform.translation.y) = (pose.position * scale).into();
     transform.rotation = Quat::from_rotation_z(pose.angle);
+}
+
+/// Resets the status while there is no game.
+pub(crate) fn clear_status(mut status: ResMut<LockstepStatus>) {
+    status.set_if_neq(LockstepStatus::default());
 }
 
 pub(crate) fn remove_views(mut commands: Commands, mut views: ResMut<BodyViews>) {

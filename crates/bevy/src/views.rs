@@ -47,6 +47,8 @@ pub struct BodyViews {
     /// Views, indexed by the slots of their bodies.
     slots: Vec<Option<View>>,
     frame: u32,
+    /// Number of the game whose bodies are shown: see `Lockstep::number`.
+    game: Option<u64>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -70,6 +72,11 @@ impl BodyViews {
     #[must_use]
     pub fn entity(&self, body: BodyId) -> Option<Entity> {
         self.view(body).map(|view| view.entity)
+    }
+
+    /// Sets the game whose bodies are shown. Returns whether it is another one.
+    pub(crate) fn begin_game(&mut self, number: u64) -> bool {
+        self.game.replace(number) != Some(number)
     }
 
     /// The view of the body of a shape.

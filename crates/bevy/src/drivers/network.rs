@@ -60,17 +60,21 @@ impl<G: LockstepGame> MatchDriver<G> {
     ) -> Result<(), LockstepError> {
         let first = self.peer.tick();
         self.peer.update(time.real_elapsed)?;
+        // A session that began after the call of `Lockstep::pause` does not know of it.
+        if let Some(session) = self.peer.session_mut().filter(|_| is_paused) {
+            session.pause(true);
+        }
         self.synchronise();
         for _ in 0..TICKS_PER_FRAME {
             if is_paused || !self.peer.is_due() {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // If the peer does not issue the inputs, they are kept for the next tick.
-            if !self.peer.advance(&inputs.next(own as usize))? {
-                break;
+            // A peer without an open seat plays ticks and issues no inputs. Inputs that are not issued are kept for the
+            // next tick.
+            if self.peer.advance(&inputs.next(own as usize))? {
+                inputs.used();
             }
-            inputs.used();
             self.synchronise();
         }
         let played = self.peer.tick().saturating_sub(first);

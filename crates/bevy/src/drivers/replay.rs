@@ -46,8 +46,16 @@ impl<G: LockstepGame> ReplayDriver<G> {
 
     /// Returns `false` if the replay has ended.
     pub(crate) fn step(&mut self) -> Result<bool, LockstepError> {
-        let step = self.film.with_timeline_mut(|timeline| timeline.step())?;
-        Ok(matches!(step, Step::Ticked))
+        self.film.with_timeline_mut(|timeline| {
+            let (before, mark) = (timeline.tick(), timeline.game().log().mark());
+            let step = timeline.step();
+            // If a tick exceeds a limit, the timeline goes back and plays earlier ticks again.
+            if step.is_err() && timeline.tick() == before {
+                let game = timeline.game();
+                game.log().return_to(mark, game.world());
+            }
+            Ok(matches!(step?, Step::Ticked))
+        })
     }
 
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
