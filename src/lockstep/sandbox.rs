@@ -127,12 +127,11 @@ impl Game for Sandbox {
             }
             world.start_work_meter(max - work);
             world.execute(command).map_err(|error| refused(format!("command {index}: {error}")))?;
-            work = work.saturating_add(world.metered_work());
+            work = work.saturating_add(world.stop_work_meter());
         }
         if work > max {
             return Err(StartError::TooMuchWork { work, max });
         }
-        world.start_work_meter(u64::MAX);
         Ok((Sandbox { world, refused: 0 }, work))
     }
 

@@ -20,7 +20,7 @@ pub(crate) fn play_within<G: Game, T>(
     }
     let done = step(game, inputs);
     // A world with an exhausted work budget has a wrong state: check before any use of it.
-    let metered = game.world_mut().map_or(0, |world| world.metered_work());
+    let metered = game.world_mut().map_or(0, |world| world.stop_work_meter());
     let work = work.saturating_add(metered);
     *spent = before.saturating_add(work);
     LimitKind::TickWork.check(work, limits.tick_work)?;

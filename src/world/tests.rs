@@ -208,9 +208,8 @@ fn a_world_is_restored_after_a_tick_without_the_budget_for_its_joints() {
     other.restore(&world.save());
     other.start_work_meter(0);
     other.step();
-    assert!(other.metered_work() > 0, "the joints are in blocks");
+    assert!(other.stop_work_meter() > 0, "the joints are in blocks");
     other.restore(&start);
-    other.start_work_meter(u64::MAX);
     (0..5).for_each(|_| other.step());
     assert_eq!(other.state_hash(), expected);
 }

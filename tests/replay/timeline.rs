@@ -205,9 +205,8 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     }
 }
 
-/// The world counts its work during the step, so the step that exceeds the limit has begun.
-#[test]
-fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
+/// A replay of balls that fall for 41 ticks. The contacts at tick 42 are counted during the step.
+fn falling_balls() -> Vec<u8> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let floor = Polygon::rectangle(fx!(20), fx!(1)).unwrap();
     let poses =
@@ -219,9 +218,12 @@ fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
     let setup = SandboxSetup { commands, ..SandboxSetup::default() };
     let mut recording = Recording::<Sandbox>::start(&setup, 60).unwrap();
     (0..120).for_each(|_| recording.step(&[vec![]]).unwrap());
-    let file = recording.finish().unwrap();
+    recording.finish().unwrap()
+}
 
-    let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+/// State hashes, and work of each tick.
+fn hashes_and_works(file: &[u8]) -> (Vec<StateHash>, Vec<u64>) {
+    let mut replay = RawReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
     let (mut hashes, mut works) = (vec![replay.game().state_hash()], vec![]);
     let mut before = replay.work();
     while replay.step() == Ok(Step::Ticked) {
@@ -229,6 +231,14 @@ fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
         works.push(replay.work() - before);
         before = replay.work();
     }
+    (hashes, works)
+}
+
+/// The world counts its work during the step, so the step that exceeds the limit has begun.
+#[test]
+fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
+    let file = falling_balls();
+    let (hashes, works) = hashes_and_works(&file);
     let most = *works.iter().max().unwrap();
     let last = works.iter().position(|&work| work == most).unwrap();
     assert!(last > 30, "the step in which the balls land costs most");
@@ -241,6 +251,21 @@ fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
         timeline.seek(tick as u64).unwrap();
         assert_eq!(timeline.game().state_hash(), hashes[tick]);
     }
+}
+
+#[test]
+fn a_game_that_leaves_its_replay_has_no_limits() {
+    let file = falling_balls();
+    let (hashes, works) = hashes_and_works(&file);
+    let limits = Limits { tick_work: works[0], ..Limits::default() };
+    let mut replay = RawReplay::<Sandbox>::open(&file, &limits).unwrap();
+    while replay.tick() < 30 {
+        replay.step().unwrap();
+    }
+    assert!(works[30..].iter().any(|&work| work > works[0]), "the limit is below the work of later ticks");
+    let mut game = replay.into_game();
+    (30..120).for_each(|_| game.step(&[vec![]]));
+    assert_eq!(game.state_hash(), hashes[120]);
 }
 
 /// A hidden value affects the sum and is not saved.

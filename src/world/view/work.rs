@@ -60,7 +60,8 @@ impl World {
         self.scratch.meter = WorkMeter::start(max);
     }
 
-    pub(crate) fn metered_work(&self) -> u64 {
-        self.scratch.meter.spent()
+    /// Ends the count, so that later ticks are not limited. Returns the work since the start.
+    pub(crate) fn stop_work_meter(&mut self) -> u64 {
+        core::mem::take(&mut self.scratch.meter).spent()
     }
 }
