@@ -4,7 +4,8 @@ use bevy::math::Quat;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
 use bevy::prelude::{
-    Commands, DetectChanges, Entity, MessageWriter, Query, Real, Res, ResMut, Time, Transform,
+    Commands, DetectChanges, DetectChangesMut, Entity, MessageWriter, Query, Real, Res, ResMut, Time,
+    Transform,
 };
 use lockstep2d::body::BodyId;
 use lockstep2d::world::World;

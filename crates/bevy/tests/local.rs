@@ -146,11 +146,15 @@ fn views_leave_with_their_game() {
     let mut app = app(local(), 1, TICK);
     (0..100).for_each(|_| app.update());
     check_views(&mut app);
+    let entities = |app: &App| app.world().resource::<BodyViews>().iter().collect::<Vec<_>>();
+    let old = entities(&app);
     app.insert_resource(local());
     app.update();
     check_views(&mut app);
+    assert!(entities(&app).iter().all(|entity| !old.contains(entity)), "the new game has new views");
     app.world_mut().remove_resource::<Lockstep<Arena>>();
     app.update();
+    assert_eq!(*app.world().resource::<LockstepStatus>(), LockstepStatus::default());
     assert_eq!(app.world_mut().query::<&BodyView>().iter(app.world()).count(), 0);
     assert_eq!(app.world().resource::<BodyViews>().iter().count(), 0);
 }

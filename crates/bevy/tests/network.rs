@@ -110,6 +110,30 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     check_replay(players, end);
 }
 
+/// A frame is as long as a tick, so that a peer has to play several ticks in a frame.
+#[test]
+fn a_spectator_that_was_suspended_catches_up() {
+    let network = bad_network();
+    let (setup, options) = (Setup::default(), PeerOptions::rollback());
+    let contact = Network::address(1);
+    let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.port(2), contact).unwrap();
+    let watch = Lockstep::watch(&setup, options, identity(3), network.port(3), contact).unwrap();
+    let mut players = [(host, 11), (guest, 29), (watch, 0)].map(|(game, seed)| Player::new(game, seed));
+    let mut behind = 0;
+    for frame in 0..900 {
+        network.set_time(network.time() + TICK);
+        let suspended = (300..500).contains(&frame);
+        players[..if suspended { 2 } else { 3 }].iter_mut().for_each(Player::update);
+        if frame == 499 {
+            behind = players[0].confirmed() - players[2].confirmed();
+        }
+    }
+    assert!(behind > 150, "{behind} ticks");
+    let behind = players[0].confirmed() - players[2].confirmed().min(players[0].confirmed());
+    assert!(behind < 20, "{behind} ticks");
+}
+
 /// Checks that all players have the same confirmed events, and that each predicted event is sent once.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
