@@ -311,6 +311,13 @@ impl Body {
         }
     }
 
+    /// Drops the target of [`World::move_to`](crate::world::World::move_to), and the velocity towards it.
+    pub(crate) fn drop_target(&mut self) {
+        if self.target.take().is_some() {
+            self.stop();
+        }
+    }
+
     pub(crate) fn stop(&mut self) {
         self.velocity = Vec2::ZERO;
         self.spin = Speed::ZERO;

@@ -143,6 +143,11 @@ impl State {
         a.acts_on(b) || b.acts_on(a)
     }
 
+    /// Whether a contact of two shapes, or an area, may hold their bodies.
+    pub(crate) fn supports(&self, pair: Pair) -> bool {
+        self.sensor_of(pair).is_none() || self.has_area(pair)
+    }
+
     /// The pair for the events; `None` if it has neither a sensor nor a shape with contact events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;

@@ -314,7 +314,9 @@ fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     let at = |x, y| Vec2::new(x, y);
     let mut world = World::default();
     let ground = [at(fx!(5), fx!(0)), at(fx!(-5), fx!(0))];
-    world.spawn(&BodyDef::fixed(), &Chain::new(&ground).one_sided().links().expect("valid")).expect("valid");
+    let links = Chain::new(&ground).one_sided().links().expect("valid");
+    let chain = world.spawn(&BodyDef::fixed(), &links).expect("valid");
+    let link = world.probe_of(world.shapes_of(chain)[0]).expect("there");
     let pill = Geometry::capsule(at(fx!(0), fx!(1)), at(fx!(0), fx!(2)), fx!(0.3)).expect("valid");
     let probe = Probe::new(pill, at(fx!(0), fx!(-0.5))).expect("valid");
     let hit = world.cast_shape(&probe, at(fx!(0), fx!(-1)), QueryFilter::default()).expect("ground");
@@ -323,4 +325,6 @@ fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     let below = probe.at(at(fx!(0), fx!(-2.5)));
     assert_eq!(world.cast_shape(&below, at(fx!(0), fx!(4)), QueryFilter::default()), None);
     assert_eq!(world.collide_mover(&below, fx!(1), QueryFilter::default()), []);
+    assert_eq!(probe.cast(at(fx!(0), fx!(-1)), &link).map(|hit| hit.fraction), Some(hit.fraction));
+    assert_eq!(below.cast(at(fx!(0), fx!(4)), &link), None);
 }

@@ -114,6 +114,31 @@ fn elastic_crowds() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// Edits of a body search all contacts, also those of sleeping bodies.
+#[test]
+fn edits_beside_sleeping_contacts() {
+    let case = |count: i64| -> Case<'_> {
+        let last = u32::try_from(64 * 64).expect("a number");
+        let shapes = || vec![square(fx!(0.5))];
+        let commands = vec![
+            each(BodyDef::dynamic(), square(fx!(0.5)), grid(64, fx!(0.3))),
+            spawn(BodyDef::dynamic().position((fx!(-100), Fx::ZERO)), shapes()),
+        ];
+        let edits = move |tick| match tick {
+            0 => Vec::new(),
+            1 => vec![Command::Sleep { body: body(0) }],
+            _ => {
+                let toggled = [Command::Disable { body: body(last) }, Command::Enable { body: body(last) }];
+                let count = usize::try_from(count).expect("a number");
+                toggled.into_iter().cycle().take(2 * count).collect()
+            }
+        };
+        (setup(commands, still()), 3, Box::new(edits))
+    };
+    let wrong = too_expensive("edits beside sleeping contacts", 50, case);
+    assert!(wrong.is_none(), "{wrong:#?}");
+}
+
 #[test]
 fn bullets_over_obstacles() {
     let mut wrong = Vec::new();

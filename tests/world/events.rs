@@ -228,3 +228,21 @@ fn hits_change_nothing_but_themselves() {
     }
     assert!(hits > 100, "{hits} hits");
 }
+
+/// The approach speed is measured at the time of the impact. A spin about the point of contact does not change it.
+#[test]
+fn a_hit_of_a_spinning_ball_has_the_speed_along_the_normal() {
+    for spin in [fx!(-40), fx!(0), fx!(40)] {
+        for phase in 0..8i64 {
+            let mut world = weightless();
+            spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), rectangle(fx!(50), fx!(1)));
+            let def = BodyDef::dynamic().position((fx!(0), fx!(1) + fx!(0.01) * phase));
+            let def = def.velocity((fx!(20), fx!(-5))).angular_velocity(spin);
+            spawn(&mut world, def, hitting(ball(fx!(0.5))).friction(fx!(0)));
+            let told = hits(&mut world, 30);
+            assert_eq!(told.len(), 1, "spin {spin}, phase {phase}");
+            let speed = told[0].approach_speed;
+            assert!((speed - fx!(5)).abs() < fx!(0.01), "spin {spin}, phase {phase}: {speed} m/s");
+        }
+    }
+}

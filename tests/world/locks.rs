@@ -1,8 +1,10 @@
 //! Locked degrees of freedom stay at zero, and the other motion follows theory.
 
-use lockstep2d::body::{BodyDef, BodySettings, MotionLocks};
+use lockstep2d::body::{BodyDef, BodySettings, Continuous, MotionLocks};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::solver::{Distance, JointDef, Revolute};
+use lockstep2d::world::World;
 
 use super::{ball, rectangle, run, spawn, square, weightless, world_with_floor};
 
@@ -131,4 +133,42 @@ fn locks_may_change_while_it_moves() {
     world.apply_angular_impulse(id, fx!(1)).expect("dynamic");
     run(&mut world, 60);
     assert!(world.body(id).expect("there").angle() != Angle::ZERO, "expected the body to turn again");
+}
+
+/// A rope has no torque about its anchor, also if one of its bodies cannot turn. A motor has its torque.
+#[test]
+fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
+    let mut world = World::default();
+    let ceiling = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
+    let def = BodyDef::dynamic().position((fx!(0.5), fx!(-2))).lock_rotation();
+    let crate_ = spawn(&mut world, def, square(fx!(0.5)));
+    let rope = JointDef::new(ceiling, crate_, Distance::rope(fx!(2))).anchor_b((fx!(-0.5), fx!(0)));
+    let rope = world.add_joint(&rope).expect("valid");
+    run(&mut world, 60);
+    let (force, torque) = world.joint_force(rope).expect("there");
+    close(force.y, fx!(10), fx!(0.1));
+    close(torque, fx!(0), fx!(0.01));
+
+    let mut world = weightless();
+    let def = BodyDef::dynamic().lock_rotation();
+    let trolley = spawn(&mut world, def, square(fx!(0.5)));
+    let wheel = spawn(&mut world, BodyDef::dynamic(), square(fx!(0.5)).density(fx!(2)).sensor());
+    let motor = JointDef::new(trolley, wheel, Revolute::new().motor(fx!(1000), fx!(10)));
+    let motor = world.add_joint(&motor).expect("valid");
+    run(&mut world, 2);
+    close(world.joint_force(motor).expect("there").1, fx!(10), fx!(0.1));
+}
+
+/// A body that a kinematic body catches within a tick is carried for the rest of the tick.
+#[test]
+fn a_kinematic_body_does_not_carry_along_locked_axes() {
+    let mut world = weightless();
+    let settings = BodySettings { continuous: Continuous::Kinematic, ..BodySettings::default() };
+    let def = BodyDef { settings, ..BodyDef::dynamic().position((fx!(0.3), fx!(0))) };
+    let held = spawn(&mut world, def.lock_x().lock_y().lock_rotation(), ball(fx!(0.03)));
+    let blade = BodyDef::kinematic().velocity((fx!(30), fx!(0))).angular_velocity(fx!(3));
+    spawn(&mut world, blade, rectangle(fx!(0.01), fx!(2)));
+    run(&mut world, 3);
+    let body = world.body(held).expect("there");
+    assert_eq!((body.position(), body.angle()), (Vec2::new(fx!(0.3), fx!(0)), Angle::ZERO));
 }

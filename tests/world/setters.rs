@@ -317,3 +317,67 @@ fn kinds_that_a_body_cannot_have_are_refused() {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
 }
+
+/// A fixed body stops, so that its rotation is no obstacle.
+#[test]
+fn a_fast_rotating_body_becomes_fixed() {
+    let mut world = weightless();
+    let star = spawn(&mut world, BodyDef::dynamic().angular_velocity(fx!(120)), ball(fx!(0.14)));
+    world.set_kind(star, BodyKind::Fixed).expect("a fixed body stops");
+    assert_eq!(world.body(star).expect("there").angular_velocity(), Fx::ZERO);
+}
+
+/// The speed limit concerns changes of the mass only.
+#[test]
+fn a_material_changes_at_any_speed() {
+    let mut world = weightless();
+    let body = spawn(&mut world, BodyDef::dynamic().angular_velocity(fx!(100)), square(fx!(0.5)));
+    let mut config = *world.config();
+    config.solver.speed_max = fx!(10);
+    world.set_config(&config).expect("valid");
+    let shape = shape_of(&world, body);
+    world
+        .set_material(shape, Material { friction: fx!(0.1), ..Material::default() })
+        .expect("mass is unchanged");
+    let heavy = |shape: &ShapeDef| ShapeDef { density: fx!(5), ..*shape };
+    let def = heavy(world.shape(shape).expect("there").def());
+    assert!(world.set_shape(shape, &def).is_err());
+}
+
+/// The target is dropped together with the velocity towards it.
+#[test]
+fn a_transform_replaces_a_target() {
+    for disables in [false, true] {
+        let mut world = weightless();
+        let lift = spawn(&mut world, BodyDef::kinematic(), square(fx!(0.5)));
+        world.move_to(lift, (fx!(1), fx!(0)), Angle::ZERO).expect("in reach");
+        let place = Vec2::new(fx!(5), fx!(5));
+        if disables {
+            world.disable(lift).expect("there");
+            world.enable(lift).expect("there");
+        } else {
+            world.set_transform(lift, place, Angle::ZERO).expect("in the world");
+        }
+        run(&mut world, 60);
+        let expected = if disables { Vec2::ZERO } else { place };
+        assert_eq!(world.body(lift).expect("there").position(), expected);
+    }
+}
+
+/// Kept manifolds measure displacements modulo 1024 m.
+#[test]
+fn a_body_moved_by_a_kilometre_leaves_its_contact() {
+    let mut world = World::default();
+    let slope = Geometry::segment((fx!(-1500), fx!(-150)), (fx!(1500), fx!(150))).expect("valid");
+    spawn(&mut world, BodyDef::fixed(), ShapeDef::new(slope));
+    let def = BodyDef::dynamic().position((fx!(600), fx!(61)));
+    let body = spawn(&mut world, def, ball(fx!(0.5)).friction(fx!(1)));
+    run(&mut world, 60);
+    let position = world.body(body).expect("there").position();
+    let place = position - Vec2::new(fx!(1024), fx!(0));
+    world.set_transform(body, place, world.body(body).expect("there").angle()).expect("in the world");
+    run(&mut world, 60);
+    // The slope is a hundred metres below.
+    let fallen = place.y - world.body(body).expect("there").position().y;
+    assert!((fx!(4)..fx!(6)).contains(&fallen), "{fallen} m in a second");
+}

@@ -3,7 +3,7 @@
 //! `versus` plays against a bot over a simulated bad line; `versus host 0.0.0.0:7000` and `versus join ADDRESS` play
 //! over UDP.
 
-use std::net::ToSocketAddrs;
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::time::Duration;
 
 use bevy::prelude::*;
@@ -36,7 +36,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let lockstep: Lockstep<Versus> = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["host", address] => Lockstep::host(&(), options, me, Udp::bind(address)?)?,
         ["join", address] => {
-            let host = address.to_socket_addrs()?.next().ok_or("no such address")?;
+            // A host of this example listens on IPv4.
+            let mut found = address.to_socket_addrs()?;
+            let host = found.find(SocketAddr::is_ipv4).ok_or("no such IPv4 address")?;
             Lockstep::join(&(), options, me, Udp::bind("0.0.0.0:0")?, socket_address(host))?
         }
         _ => {

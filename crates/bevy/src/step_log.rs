@@ -20,11 +20,11 @@ pub(crate) struct Stamp {
     ticks: u64,
 }
 
-/// An event, and whether it was sent as predicted.
+/// An event, and the tick with which it was sent as predicted. A rollback may have moved it since then.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     event: LoggedEvent,
-    announced: bool,
+    announced: Option<u64>,
 }
 
 /// An announced event whose tick was rolled back.
@@ -32,7 +32,7 @@ struct Entry {
 struct Withdrawn {
     event: LoggedEvent,
     /// Tick of the [`PredictedEvent`](crate::PredictedEvent).
-    announced_tick: u64,
+    announced: u64,
 }
 
 /// A position to return to: see [`StepLog::return_to`].
@@ -74,10 +74,10 @@ pub(crate) struct StepLog {
 }
 
 impl Entry {
-    /// The event, if it was announced. `base` is the tick at which its epoch begins.
-    fn withdrawn(self, base: u64) -> Option<Withdrawn> {
+    /// The event, if it was announced.
+    fn withdrawn(self) -> Option<Withdrawn> {
         let Entry { event, announced } = self;
-        announced.then_some(Withdrawn { event, announced_tick: base + event.tick })
+        announced.map(|announced| Withdrawn { event, announced })
     }
 }
 
@@ -120,7 +120,7 @@ impl StepLog {
             let same = withdrawn.iter().position(|other| {
                 other.event.is_alike(&event) && other.event.tick.abs_diff(event.tick) <= SAME_EVENT_TICKS
             });
-            let announced = same.map(|place| withdrawn.remove(place)).is_some();
+            let announced = same.map(|place| withdrawn.remove(place).announced);
             pending.push_back(Entry { event, announced });
         });
     }
@@ -139,8 +139,7 @@ impl StepLog {
         self.replayed = self.replayed.max(u32::try_from(back).unwrap_or(u32::MAX));
         while self.pending.back().is_some_and(|entry| entry.event.tick > self.ticks) {
             let last = self.pending.pop_back();
-            let base = self.base();
-            self.withdrawn.extend(last.and_then(|entry| entry.withdrawn(base)));
+            self.withdrawn.extend(last.and_then(Entry::withdrawn));
         }
         if !self.is_after_stale {
             let exists = |body| world.is_some_and(|world| world.body(body).is_some());
@@ -151,14 +150,13 @@ impl StepLog {
 
     /// Begins an epoch at a loaded state. Returns 0, because this load does not count as a rollback.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
-        let old_base = self.base();
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);
         self.epoch = u32::try_from(self.bases.len() - 1).unwrap_or(u32::MAX);
         if self.suspended_at.is_some() {
             return 0;
         }
-        self.withdrawn.extend(self.pending.drain(..).filter_map(|entry| entry.withdrawn(old_base)));
+        self.withdrawn.extend(self.pending.drain(..).filter_map(Entry::withdrawn));
         // In the new epoch, withdrawn events count as events of tick 0.
         self.withdrawn.iter_mut().for_each(|withdrawn| withdrawn.event.tick = 0);
         (self.shown, self.shown_again) = (None, None);
@@ -236,11 +234,12 @@ impl StepLog {
     /// Returns the events that were not announced before, and marks them as announced.
     pub(crate) fn announce(&mut self) -> Vec<LoggedEvent> {
         let base = self.base();
-        let fresh = self.pending.iter_mut().filter(|entry| !entry.announced);
+        let fresh = self.pending.iter_mut().filter(|entry| entry.announced.is_none());
         fresh
             .map(|entry| {
-                entry.announced = true;
-                LoggedEvent { tick: base + entry.event.tick, ..entry.event }
+                let tick = base + entry.event.tick;
+                entry.announced = Some(tick);
+                LoggedEvent { tick, ..entry.event }
             })
             .collect()
     }
@@ -252,10 +251,7 @@ impl StepLog {
         let (over, open): (Vec<_>, _) = self.withdrawn.iter().partition(|withdrawn| is_over(withdrawn));
         self.withdrawn = open;
         over.into_iter()
-            .map(|Withdrawn { event, announced_tick }: Withdrawn| LoggedEvent {
-                tick: announced_tick,
-                ..event
-            })
+            .map(|Withdrawn { event, announced }: Withdrawn| LoggedEvent { tick: announced, ..event })
             .collect()
     }
 

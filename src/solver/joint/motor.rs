@@ -148,7 +148,9 @@ impl Motor {
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         if let Some(Pull { soft, max }) = self.angular_spring {
-            let range = JointLimit { lower: max.saturating_neg(), upper: max };
+            // An unlimited range is recognised by its bounds.
+            let lower = if max == Fx::MAX { Fx::MIN } else { -max };
+            let range = JointLimit { lower, upper: max };
             parts.spring_within(Direction::Angle, Some(soft.towards(Fx::ZERO)), range);
         }
         parts.drive(Direction::Angle, self.angular);

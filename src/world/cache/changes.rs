@@ -4,6 +4,9 @@ use crate::body::{Body, Handle};
 use crate::collision::{BroadPhase, Pair};
 use crate::math::Aabb;
 
+/// Length of the list of changed shapes below which repeated slots are kept.
+const COMPACT_MIN: usize = 4096;
+
 /// Changes since the last pair update that may affect the set of pairs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
@@ -16,6 +19,8 @@ pub(crate) struct Changes {
     /// Slots of shapes that may have new pairs, because their fat box, their body or its activity has changed. A slot
     /// may be listed twice.
     shapes: Vec<u32>,
+    /// Length of `shapes` at which repeated slots are removed.
+    compact_at: usize,
     /// Fat boxes at the last pair update: boxes that overlapped then are not a new pair. [`Aabb::NOWHERE`] if the box
     /// is unknown, or if more than the box of the shape has changed.
     last_boxes: Vec<Aabb>,
@@ -60,13 +65,19 @@ impl Changes {
     }
 
     pub(crate) fn box_changed(&mut self, shape: u32) {
+        // Edits without ticks would otherwise lengthen the list for ever.
+        if self.shapes.len() >= self.compact_at.max(COMPACT_MIN) {
+            self.shapes.sort_unstable();
+            self.shapes.dedup();
+            self.compact_at = 2 * self.shapes.len();
+        }
         self.shapes.push(shape);
     }
 
     /// Records that the shapes of a body may have new pairs even if their fat boxes have not changed.
     pub(crate) fn body_changed(&mut self, body: &Body) {
         for id in body.shapes() {
-            self.shapes.push(id.slot());
+            self.box_changed(id.slot());
             if let Some(last) = self.last_boxes.get_mut(id.slot() as usize) {
                 *last = Aabb::NOWHERE;
             }
@@ -98,14 +109,14 @@ impl Changes {
 
     /// Copies the record without the boxes of the last pair update.
     pub(crate) fn save_into(&self, saved: &mut Self) {
-        let Changes { everything, sleeping_contacts, rules, shapes, last_boxes: _ } = self;
+        let Changes { everything, sleeping_contacts, rules, shapes, compact_at: _, last_boxes: _ } = self;
         (saved.everything, saved.sleeping_contacts, saved.rules) = (*everything, *sleeping_contacts, *rules);
         saved.shapes.clone_from(shapes);
     }
 
     /// Restores the record of a snapshot, after its state.
     pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
-        let Changes { everything, sleeping_contacts, rules, shapes, last_boxes } = self;
+        let Changes { everything, sleeping_contacts, rules, shapes, compact_at: _, last_boxes } = self;
         (*everything, *sleeping_contacts, *rules) = (saved.everything, saved.sleeping_contacts, saved.rules);
         shapes.clone_from(&saved.shapes);
         last_boxes.clear();

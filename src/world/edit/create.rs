@@ -165,7 +165,7 @@ impl World {
         let (a, b) = def.bodies();
         let id = self.state.joints.insert(Joint::new(def));
         self.scratch.joint_links.add(id, (a, b));
-        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        joints_changed(&mut self.state, &mut self.scratch, Vec::from([a, b]));
         id
     }
 

@@ -16,9 +16,11 @@ impl World {
     pub fn despawn(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let shapes = body.shapes.clone();
+        let mut joined = Vec::new();
         for joint in self.scratch.joint_links.of(&self.state, id) {
-            self.remove_joint(joint)?;
+            joined.extend(self.take_joint(joint)?);
         }
+        joints_changed(&mut self.state, &mut self.scratch, joined);
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         self.delete_shapes(&shapes);
         self.state.bodies.remove(id);
@@ -56,11 +58,17 @@ impl World {
     /// [`WorldError::StaleJoint`] if the joint is not in the world.
     #[doc(alias = "destroy_joint")]
     pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
-        let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
-        let (a, b) = joint.def.bodies();
-        self.scratch.joint_links.remove(id, (a, b));
-        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        let bodies = self.take_joint(id)?;
+        joints_changed(&mut self.state, &mut self.scratch, bodies.into());
         Ok(())
+    }
+
+    /// Removes a joint and returns its bodies, which the caller passes to [`joints_changed`].
+    fn take_joint(&mut self, id: JointId) -> Result<[BodyId; 2], WorldError> {
+        let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
+        let bodies = joint.def.bodies();
+        self.scratch.joint_links.remove(id, bodies);
+        Ok(bodies.into())
     }
 
     /// Removes shapes, but leaves their handles in the list of their body.
@@ -74,6 +82,9 @@ impl World {
 
     /// Ends the contacts of shapes that are about to be removed, changed or disabled. The next tick reports the ends.
     pub(super) fn end_contacts(&mut self, ids: &[ShapeId]) {
+        if ids.is_empty() || !self.spend_scan() {
+            return;
+        }
         let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
         slots.sort_unstable();
         let ends = |(a, b): Pair| slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok();
@@ -86,7 +97,7 @@ impl World {
         for contact in ended {
             let removed = self.state.reported(&contact);
             self.state.removed_contacts.extend(removed);
-            if self.state.sensor_of(contact.shapes).is_none() {
+            if self.state.supports(contact.shapes) {
                 contact_ended(&mut self.state, contact.shapes);
             }
         }

@@ -3,9 +3,13 @@
 use alloc::boxed::Box;
 
 use crate::body::{Body, BodyId, BodyKind, Handle, Pose, WorldError, check_position};
+use crate::fx;
 use crate::math::{Angle, Fx, Vec2};
 use crate::world::World;
 use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
+
+/// Length in metres of a move that ends kept manifolds, which measure displacements modulo 1024 m.
+const KEPT_MOVE_MAX: Fx = fx!(512);
 
 impl World {
     /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up.
@@ -173,8 +177,12 @@ impl World {
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         wake_joined(&mut self.state, &mut self.scratch, id);
         let body = self.state.bodies.at_mut(id.slot());
-        body.target = None;
+        let by = position - body.position();
+        body.drop_target();
         body.set_transform(position, angle);
+        if by.x.abs().max(by.y.abs()) >= KEPT_MOVE_MAX {
+            self.end_manifolds(id.slot());
+        }
         self.refit_body(id.slot());
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         Ok(())

@@ -3,6 +3,8 @@
 //! Setting a value that a joint already has does not wake its bodies, so that a machine whose motors are set in every
 //! tick can fall asleep.
 
+use alloc::vec::Vec;
+
 use crate::body::{BodyId, JointId, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{JointDef, JointFrame, JointKind, JointLimit};
@@ -98,7 +100,7 @@ impl World {
             joint.redefine(*def);
         }
         if changes_collisions {
-            joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+            joints_changed(&mut self.state, &mut self.scratch, Vec::from([a, b]));
         } else {
             joint_retuned(&mut self.state, &mut self.scratch, [a, b]);
         }

@@ -21,7 +21,23 @@ use super::state::State;
 use crate::body::{Body, Handle, MassProperties, ShapeDef, WorldError};
 use crate::math::{Fx, Vec2, fx_mul};
 
+/// Number of contacts whose shapes are compared in one work unit.
+const SCANNED_PER_WORK: usize = 64;
+
 impl World {
+    /// Counts the work of a search of all contacts, including sleeping ones. Returns whether the budget covers it.
+    fn spend_scan(&mut self) -> bool {
+        let count = self.state.contacts.len() + self.state.sleeping_contacts.len();
+        self.scratch.meter.spend(u64::try_from(count / SCANNED_PER_WORK).unwrap_or(u64::MAX))
+    }
+
+    /// Drops the manifolds of a body whose shapes, pose or centre of mass change.
+    fn end_manifolds(&mut self, body: u32) {
+        if !self.state.bodies.at(body).shapes().is_empty() && self.spend_scan() {
+            self.state.end_manifolds(body);
+        }
+    }
+
     fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
         body.shapes.iter().map(|id| self.state.shapes.at(id.slot()).def())
     }
@@ -37,7 +53,11 @@ impl World {
         Ok(())
     }
 
+    /// Checks the rotation of a body against the limit before a change of its mass.
     fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
+        if body.mass == *mass {
+            return Ok(());
+        }
         self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
     }
 

@@ -83,7 +83,9 @@ impl World {
             shape.validate(offset_max(kind))?;
         }
         let mass = mass_of(kind, *body.mass_source, &body.settings, self.shape_defs(body))?;
-        self.check_spin(body, &mass)?;
+        if kind != BodyKind::Fixed {
+            self.check_spin(body, &mass)?;
+        }
         let kind_of = |other: BodyId| match other == id {
             true => kind,
             false => self.state.bodies.at(other.slot()).kind(),
@@ -104,7 +106,7 @@ impl World {
         }
         let body = self.state.bodies.redefine(id.slot());
         body.kind = kind;
-        body.target = None;
+        body.drop_target();
         self.replace_mass(id.slot(), mass);
         let body = self.state.bodies.redefine(id.slot());
         if kind != BodyKind::Dynamic {
@@ -120,7 +122,7 @@ impl World {
     }
 
     /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and velocity, but loses its
-    /// applied forces and its target. It has no contacts, its joints are not solved, and no query finds it.
+    /// applied forces. A target of [`World::move_to`] is lost, with the velocity towards it. It has no contacts, its joints are not solved, and no query finds it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if the body is not in the world.
@@ -136,9 +138,12 @@ impl World {
         for shape in shapes {
             self.scratch.shapes.remove(shape.slot());
         }
+        for joint in self.scratch.joint_links.of(&self.state, id) {
+            self.state.joints.at_mut(joint.slot()).rest();
+        }
         let body = self.state.bodies.redefine(id.slot());
         body.enabled = false;
-        body.target = None;
+        body.drop_target();
         (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
         self.scratch.awake.invalidate();
         Ok(())
@@ -223,7 +228,7 @@ impl World {
             self.end_contacts(&[id]);
         }
         *self.state.shapes.redefine(id.slot()).def = *def;
-        self.state.end_manifolds(slot);
+        self.end_manifolds(slot);
         self.replace_mass(slot, mass);
         self.refit_body(slot);
         self.scratch.pairs.changes.rules_changed();
@@ -295,7 +300,7 @@ impl World {
     /// Replaces the mass of a body. Drops its manifolds, because lever arms are relative to the centre of mass.
     pub(super) fn replace_mass(&mut self, body: u32, mass: MassProperties) {
         if self.state.bodies.at(body).mass != mass {
-            self.state.end_manifolds(body);
+            self.end_manifolds(body);
         }
         self.state.bodies.redefine(body).set_mass(mass);
     }

@@ -95,10 +95,8 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
     }
 }
 
+/// Wakes the bodies that joints connect to a body, and restarts their counts of ticks at rest.
 pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) {
-    if state.islands.len() == 0 {
-        return;
-    }
     for joint in scratch.joint_links.of(state, id) {
         let (a, b) = state.joints.at(joint.slot()).def().bodies();
         for body in [a, b] {
@@ -115,8 +113,10 @@ pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [B
     scratch.awake.invalidate();
 }
 
-/// Wakes two bodies after a change of their joint that may affect whether they collide.
-pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
+/// Wakes bodies after a change of their joints that may affect whether they collide. Bodies may be listed repeatedly.
+pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, mut bodies: Vec<BodyId>) {
+    bodies.sort_unstable();
+    bodies.dedup();
     for id in bodies {
         wake_body(state, scratch, id.slot());
         scratch.pairs.changes.body_changed(state.bodies.at(id.slot()));

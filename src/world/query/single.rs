@@ -137,13 +137,16 @@ impl Probe {
     }
 
     /// Returns where this shape meets another as it moves along a translation in metres: see [`World::cast_shape`].
-    /// Unlike there, chain links are solid from both sides.
     #[must_use]
     #[doc(alias = "shapecast")]
     pub fn cast(&self, translation: impl Into<Vec2<Fx>>, other: &Probe) -> Option<ProbeHit> {
         let translation = translation.into();
         let origin = self.position();
-        let (own, other) = (self.support(origin), other.support(origin));
+        let own = self.support(origin);
+        if !other.posed().is_solid_from(origin + own.middle()) {
+            return None;
+        }
+        let other = other.support(origin);
         let hit = cast_shape(&other, &own, translation)?;
         let starts_inside = hit.fraction == Fx::ZERO && distance(&other, &own).distance < Fx::ZERO;
         Some(ProbeHit {

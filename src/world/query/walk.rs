@@ -100,7 +100,7 @@ impl<'a> Walk<'a> {
         // velocity is 0, the displacement counts as that of one tick. This is for a body moved by `World::move_to`, but
         // also applies to a fixed or resting body that `World::set_transform` has placed elsewhere.
         let mut velocity = body.velocity_at(ground.point);
-        if velocity == Vec2::ZERO {
+        if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
             let rate = i64::from(self.world.state.config.tick_rate);
             velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
         }

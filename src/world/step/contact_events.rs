@@ -22,7 +22,7 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     }
     for contact in pairs.ended.drain(..).filter(|contact| contact.touching) {
         end(reported(state, motion, &contact), events);
-        if !is_with_sensor(motion, &contact) {
+        if !is_with_sensor(motion, &contact) || state.has_area(contact.shapes) {
             contact_ended(state, contact.shapes);
         }
     }

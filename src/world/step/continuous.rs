@@ -115,6 +115,10 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
         } else {
             centre += (obstacle.end - obstacle.start).scale(rest);
         }
+        let locks = body.settings.locks;
+        centre.x = if locks.x { start.x } else { centre.x };
+        centre.y = if locks.y { start.y } else { centre.y };
+        angle = if body.turns() { angle } else { body.angle };
     }
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     Pose { centre: centre.max(-edge).min(edge), angle }
@@ -154,8 +158,7 @@ fn first_impact(
             // A moving obstacle was somewhere else during the tick: its current bounds do not rule it out.
             let is_near =
                 other_shape.bounds.overlaps(area) || (sees_moving && obstacle.kind() != BodyKind::Fixed);
-            let is_solid = is_near && shapes.poses().at(other).is_solid_from(posed.centre);
-            if is_solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
+            if is_near && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
                 let is_fast = match obstacle.kind() {
                     BodyKind::Kinematic if !is_bullet(body) => is_fast_relative(scratch, swept, &movement),
@@ -169,6 +172,9 @@ fn first_impact(
                     // A quarter of the depth at which the shape's centre would be on the surface, at most 5 mm.
                     (support, -(support.inner_radius() / 4).min(fx!(0.005)))
                 });
+                if !shapes.poses().at(other).is_solid_from(body.centre + support.middle()) {
+                    return ControlFlow::Continue(());
+                }
                 if !meter.spend(IMPACT_WORK) {
                     return ControlFlow::Break(());
                 }

@@ -24,12 +24,16 @@ pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &T
             }
         }
     }
-    for &id in &broken {
-        if let Some(joint) = state.joints.remove(id) {
-            let (a, b) = joint.def().bodies();
-            scratch.joint_links.remove(id, (a, b));
-            joints_changed(state, scratch, [a, b]);
+    if !broken.is_empty() {
+        let mut parted = Vec::new();
+        for id in broken {
+            if let Some(joint) = state.joints.remove(id) {
+                let bodies = joint.def().bodies();
+                scratch.joint_links.remove(id, bodies);
+                parted.extend(<[_; 2]>::from(bodies));
+            }
         }
+        joints_changed(state, scratch, parted);
     }
     scratch.awake.refresh(state);
 }

@@ -6,12 +6,12 @@ use super::recycle::Recycling;
 use super::speculative::{Side, SpeculativePair, approach};
 use crate::body::Handle;
 use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
-use crate::math::{Fx, Step, saturate, widen};
+use crate::math::{Fx, Length, Step, Vec2};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
     AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses,
-    Scratch,
+    PredictedMotion, Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -203,6 +203,8 @@ impl NarrowPhase<'_> {
             }
             let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
             let Some(manifold) = manifolds.last_mut() else { continue };
+            // Displacements of the bodies until their impact, at which the manifold is computed.
+            let mut moved_by = [Vec2::ZERO; 2];
             if !is_kept {
                 keep_reachable(state, poses, &pair, contact, manifold);
                 if manifold.points().is_empty() {
@@ -217,6 +219,7 @@ impl NarrowPhase<'_> {
                         && let Some(moved) = pair.move_to_impact(sides, motion, manifold, sat)
                     {
                         recycling.keep_impact(contact, manifold, moved);
+                        moved_by = moved;
                     }
                 }
             }
@@ -224,7 +227,7 @@ impl NarrowPhase<'_> {
             contacts.push(index);
             let mut is_hit = false;
             if (shape_a.hit_events || shape_b.hit_events)
-                && let Some(approach) = fast_approach(state, motion, index, contact, manifold)
+                && let Some(approach) = fast_approach(state, motion, index, contact, manifold, moved_by)
             {
                 approaches.push(approach);
                 is_hit = true;
@@ -313,21 +316,26 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// The hit event of a fast approach. It is reported if the shapes push each other.
+/// The hit event of a fast approach. It is reported if the shapes push each other. `moved_by` is the displacement of
+/// the bodies from the start of the tick to the manifold.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,
     index: u32,
     contact: &Contact,
     manifold: &Manifold,
+    moved_by: [Vec2<Length>; 2],
 ) -> Option<PendingHit> {
-    let body_motion = |shape: u32| motion.motion(motion.shape(shape));
+    let body_motion = |shape: u32, by: Vec2<Length>| {
+        let start = motion.motion(motion.shape(shape));
+        PredictedMotion { centre: start.centre + by.widen(), ..*start }
+    };
     let (a, b) = contact.shapes;
-    let closing_at = approach(body_motion(a), body_motion(b), manifold);
+    let closing_at = approach(&body_motion(a, moved_by[0]), &body_motion(b, moved_by[1]), manifold);
     let closings = manifold.points().iter().map(|point| (point, closing_at(point)));
     let (point, closing) = closings.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    let approach_speed =
-        widen(Step::from_bits(saturate(closing))).saturating_mul_int(state.config.tick_rate.into());
+    let metres = Fx::from_bits(closing.saturating_mul(1 << (Fx::FRAC_NBITS - Step::FRAC_NBITS)));
+    let approach_speed = metres.saturating_mul_int(state.config.tick_rate.into());
     if approach_speed < state.config.hit_speed {
         return None;
     }

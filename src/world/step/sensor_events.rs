@@ -13,6 +13,7 @@ use crate::math::{Aabb, Angle, Fx, Rot};
 use crate::solver::turn_of;
 use crate::world::cache::Scratch;
 use crate::world::events::{Events, SensorEvent};
+use crate::world::islands::contact_ended;
 use crate::world::state::{Side, State};
 
 /// Work units of following a pair without a contact.
@@ -31,6 +32,9 @@ pub(super) fn report_sensors(state: &mut State, scratch: &mut Scratch) {
         if is_with_sensor(scratch, contact.shapes) {
             let visit = Visit::of(state, scratch, contact.shapes, contact.touching);
             visit.report(state, contact.shapes, &mut scratch.results.events);
+            if contact.touching && !visit.is_inside && state.has_area(contact.shapes) {
+                contact_ended(state, contact.shapes);
+            }
             contact.touching = visit.is_inside;
         }
     }

@@ -38,9 +38,10 @@ type Socket = WebSocketStream<TcpStream>;
 pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Error> {
     stream.set_nodelay(true)?;
     let mut code = String::new();
+    let frame_max = Some(ADDRESS_BYTES.saturating_add(shared.limits.datagram_bytes));
     let config = WebSocketConfig::default()
-        .max_message_size(Some(ADDRESS_BYTES + shared.limits.datagram_bytes))
-        .max_frame_size(Some(ADDRESS_BYTES + shared.limits.datagram_bytes))
+        .max_message_size(frame_max)
+        .max_frame_size(frame_max)
         .read_buffer_size(8 * 1024)
         .write_buffer_size(8 * 1024);
     #[expect(clippy::result_large_err, reason = "the type is that of the callback")]

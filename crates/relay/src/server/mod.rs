@@ -56,7 +56,7 @@ impl Server {
     /// Accepts connections until the future is dropped. Connections that are open by that time continue until they end
     /// or the runtime is dropped.
     pub async fn run(self) {
-        let places = Arc::new(Semaphore::new(self.limits.connections));
+        let places = Arc::new(Semaphore::new(self.limits.connections.min(Semaphore::MAX_PERMITS)));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });
         loop {
             // At the limit of connections, further ones wait in the backlog of the system.

@@ -158,8 +158,9 @@ impl App {
         }
     }
 
-    /// Shows a source. Resets the comparison, the view, the selection and the player.
+    /// Closes the current source and shows another one. Resets the comparison, the view, the selection and the player.
     pub fn show(&mut self, source: Box<dyn Source>) {
+        self.close();
         self.source = Some(source);
         (self.comparison, self.file, self.message) = (None, None, None);
         (self.player, self.view) = (Player::default(), View::default());
@@ -270,6 +271,12 @@ impl App {
     /// Shows a message.
     pub fn tell(&mut self, message: String) {
         self.message = Some(message);
+    }
+
+    /// The message that is shown.
+    #[must_use]
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_deref()
     }
 
     fn remarks(&self) -> Vec<String> {

@@ -28,14 +28,22 @@ impl Host {
 
     /// Saves the recording if the command line names an output file.
     pub(super) fn finish(&self, app: &mut App) -> Result<(), WindowError> {
-        if self.output.is_some() {
-            app.save();
+        let Some(path) = &self.output else { return self.save(app) };
+        app.save();
+        let requests = app.take_requests();
+        if requests.is_empty() {
+            let error = io::Error::other(app.message().unwrap_or("nothing to save"));
+            return Err(WindowError::File { path: path.display().to_string(), error });
         }
-        self.save(app)
+        self.fulfil(requests)
     }
 
     fn save(&self, app: &mut App) -> Result<(), WindowError> {
-        for Request::Save { name, bytes } in app.take_requests() {
+        self.fulfil(app.take_requests())
+    }
+
+    fn fulfil(&self, requests: Vec<Request>) -> Result<(), WindowError> {
+        for Request::Save { name, bytes } in requests {
             let named = self.output.clone().unwrap_or_else(|| name.clone().into());
             let failed = |error| WindowError::File { path: named.display().to_string(), error };
             let path = match &self.output {

@@ -129,7 +129,7 @@ fn take_part(
         }
         match (interrupts.load(Ordering::Relaxed), peer.status()) {
             (0, Some(Status::Kicked)) => return Err("removed from the match by the others".into()),
-            (0, None | Some(Status::Paused)) if now >= heard_at + arguments.give_up() => {
+            (0, None | Some(Status::Paused)) if now.saturating_sub(heard_at) >= arguments.give_up() => {
                 return Err(format!("nobody was heard for {} s", arguments.give_up).into());
             }
             (0, None | Some(Status::Paused)) => {}

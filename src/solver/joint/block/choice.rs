@@ -161,24 +161,28 @@ impl Choice {
         for first in 0..candidates.len() {
             let is_chosen = candidates[first].rows > 0
                 && candidates[first].bodies.iter().any(|&body| self.places[body as usize] != NOT_CROWDED);
-            if !is_chosen || self.settled[first] {
-                continue;
+            // A block is limited in size, so that one that starts elsewhere may leave out this joint.
+            while is_chosen && !self.settled[first] {
+                self.add_block(candidates, index(first));
             }
-            // The first walk finds a joint at the rim of the block. An order that starts there has a narrow envelope.
-            let start = index(first);
-            self.walk(candidates, start);
-            let rim = self.queue.last().copied().unwrap_or(start);
-            for &joint in &self.queue {
-                self.taken[joint as usize] = false;
-            }
-            self.walk(candidates, rim);
-            for &joint in &self.queue {
-                self.settled[joint as usize] = true;
-            }
-            // Reverse Cuthill-McKee order.
-            self.order.extend(self.queue.iter().rev());
-            self.block_ends.push(self.order.len());
         }
+    }
+
+    /// Adds a block of joints in reach of `start`.
+    fn add_block(&mut self, candidates: &[Candidate], start: u32) {
+        // The first walk finds a joint at the rim of the block. An order that starts there has a narrow envelope.
+        self.walk(candidates, start);
+        let rim = self.queue.last().copied().unwrap_or(start);
+        for &joint in &self.queue {
+            self.taken[joint as usize] = false;
+        }
+        self.walk(candidates, rim);
+        for &joint in &self.queue {
+            self.settled[joint as usize] = true;
+        }
+        // Reverse Cuthill-McKee order.
+        self.order.extend(self.queue.iter().rev());
+        self.block_ends.push(self.order.len());
     }
 
     fn count(&mut self, candidates: &[Candidate], body_count: usize) {

@@ -52,17 +52,32 @@ impl JointSet {
         if let JointKind::Pulley(pulley) = &joint.def.kind {
             return pulley_reaction(pulley, joint, (a, b), &bodies, tuning);
         }
-        // The velocity of the lighter body has more significant bits.
-        let (body, moved, arm) = if a.has_mass() && (!b.has_mass() || a.mass() < b.mass()) {
-            (a, bodies[1].reversed(), pose.reach_of_a().arm)
-        } else {
-            (b, bodies[2], pose.lever_b.arm)
+        let measured = |is_a: bool| {
+            let (body, moved, arm) = match is_a {
+                true => (a, bodies[1].reversed(), pose.reach_of_a().arm),
+                false => (b, bodies[2], pose.lever_b.arm),
+            };
+            let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
+            let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));
+            let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
+            (force, torque.saturating_sub(arm.widen().cross(force)))
         };
-        let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
-        let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));
-        let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
-        (force, torque.saturating_sub(arm.widen().cross(force)))
+        // The velocity of the lighter body has more significant bits. The spin of a body that cannot turn is 0, so that
+        // the torque is measured at the other one.
+        let is_lighter = a.has_mass() && (!b.has_mass() || a.mass() < b.mass());
+        let (force, _) = measured(is_lighter);
+        let torque = match (turns(a), turns(b)) {
+            (true, true) => measured(is_lighter).1,
+            (true, false) => measured(true).1,
+            (false, true) => measured(false).1,
+            (false, false) => Fx::ZERO,
+        };
+        (force, torque)
     }
+}
+
+fn turns(body: &Body) -> bool {
+    body.has_mass() && body.turns()
 }
 
 /// The force of a rope on B. The impulse of either body gives the tension.
