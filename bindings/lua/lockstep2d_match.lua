@@ -4,7 +4,8 @@
 --- - `step(inputs, absent)`: advances by a tick. `inputs` of all seats are a string, `absent` has a bit for each empty
 ---   seat;
 --- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores it, frees the copy;
---- - `hash()`: an `ls2d_hash` of the whole state;
+--- - `hash()`: an `ls2d_hash` of the whole state, which the driver copies. `ls.world_hash` writes into an
+---   `ffi.new("ls2d_hash")`;
 --- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
 ---
 --- `send(to, packet)` sends a packet to an address; both are strings.
@@ -18,12 +19,9 @@ local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
 --- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
 --- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` has 28 random bytes,
---- for systems without /dev/urandom.
+--- for systems without /dev/urandom. They give the `peer`, `key` and `secret` that are not in `settings`.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
-    for field, value in pairs(options.settings or {}) do
-        config[field] = value
-    end
     -- For `peer`, `key` and `secret`, which must not be guessable.
     local random = options.random
     if not random then
@@ -39,6 +37,10 @@ function Driver.new(options)
     end
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "peer"), random:sub(1, 4), 4)
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "key"), random:sub(5), 24)
+    -- After the random bytes, because a peer that returns to its seat passes its own `key` and `secret`.
+    for field, value in pairs(options.settings or {}) do
+        config[field] = value
+    end
     local handle, offer, contact = ls.out("handle"), options.offer, options.contact
     if contact then
         ls.match_join(config, offer, #offer, contact, #contact, handle)
@@ -137,7 +139,10 @@ end
 
 function Driver:keep(tick)
     self:forget(function(kept) return kept == tick end)
-    self.saves[tick] = { saved = self.game:save(), hash = self.game:hash() }
+    -- A copy, because `hash` may be an item of an array: such a reference does not keep the array alive.
+    local hash = ffi.new("ls2d_hash[1]")
+    hash[0] = self.game:hash()
+    self.saves[tick] = { saved = self.game:save(), hash = hash }
 end
 
 function Driver:forget(condition)

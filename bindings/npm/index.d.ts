@@ -1230,17 +1230,21 @@ export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
 /** Plays a game in a match: saves, restores and advances it as the match requests. */
 export class MatchDriver<Saved = unknown> {
     #private;
-    /** The game has to be in the state before the first tick. `send` sends a packet to an address. */
+    /** The game has to be in the state before the first tick. `send` sends a packet to an address. If it throws, the
+     * packet is lost, and the match goes on. */
     constructor(match: Match, game: MatchGame<Saved>, send: (to: Uint8Array, packet: Uint8Array) => void);
     readonly match: Match;
     /** Number of ticks played, including those with guessed inputs. */
     readonly tick: number;
     /** Whether the match is finished, and the game has played all its ticks with final inputs. */
     readonly ended: boolean;
+    /** The last error that `send` has thrown. */
+    readonly sendError: unknown;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
      * returns the inputs of your own seats in order. Returns the events. For an event `state`, the game has already
-     * decoded the state. After an error of the game, every further call throws that error. */
+     * decoded the state. After an error of the game, every further call throws that error. An error of `readInputs`
+     * is thrown once; the next call continues, and returns the events of this one as well. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
@@ -1267,13 +1271,13 @@ export function encodeNativeState(world: World): Uint8Array;
 export function decodeNativeState(bytes: Uint8Array): World;
 
 /** A member of a room of a relay (`crates/relay`), which carries packets over a WebSocket. It reconnects when the
- * connection is lost; packets are lost meanwhile. */
+ * connection is lost or the relay does not answer for 15 seconds; packets are lost meanwhile. */
 export class Relay {
     #private;
     private constructor();
     /** Enters a room, and creates it if necessary. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
      * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. Node before 22
-     * needs `WebSocket`. */
+     * needs `WebSocket`. If the relay refuses the connection, or does not answer within ten seconds, throws `RELAY`. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array | undefined; WebSocket?: unknown }): Promise<Relay>;
     /** Address of this member. */
     readonly own: Uint8Array;

@@ -3,7 +3,7 @@
 // The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
 // Node and a native one play 3000 ticks. The first peer in Node is paused for five seconds, and the second is restarted
 // with its key. All three end with the same hash. The peers that play from the first tick write equal replays, which
-// verify.
+// verify. Meanwhile, a member of another room sends nothing and keeps its connection.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -16,7 +16,6 @@ import * as L from "./src/index.js";
 const [relayProgram, pushProgram, command] = process.argv.slice(2);
 const TICKS = 3000;
 const CODE = "ROOM-7";
-const PEER = fileURLToPath(new URL("tests/relay/peer.mjs", import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), "relay-"));
 const children = [];
 
@@ -36,7 +35,9 @@ function start(program, ...args) {
 
 // Node 20 has a WebSocket behind a flag.
 const flags = typeof WebSocket === "undefined" ? ["--experimental-websocket", "--no-warnings"] : [];
-const peer = (...args) => start(process.execPath, ...flags, PEER, ...args);
+const FOLDER = fileURLToPath(new URL("tests/relay/", import.meta.url));
+const node = (name, ...args) => start(process.execPath, ...flags, join(FOLDER, `${name}.mjs`), ...args);
+const peer = (...args) => node("peer", ...args);
 
 /** The hash of a sandbox, which also covers the number of refused commands, here 0. */
 function sandboxHash(world) {
@@ -48,6 +49,7 @@ async function play() {
     const relay = start(relayProgram, "--listen", "127.0.0.1:0", "--json");
     await relay.first();
     const { address } = JSON.parse(relay.lines[0]);
+    const silent = node("silent", address);
     const file = (name) => join(folder, `${name}.replay`);
     const native = start(pushProgram, address, CODE, "--ticks", String(TICKS), "-o", file("native"));
     // The first in the room opens the match.
@@ -58,6 +60,7 @@ async function play() {
     await peer(address, CODE, "2", "--quit-at", "1500").ended;
     const again = peer(address, CODE, "2");
     const ends = await Promise.all([native, paused, again].map((each) => each.last()));
+    await silent.ended;
     relay.child.kill("SIGINT");
     await relay.ended;
     return { ends, files: ["native", "paused"].map(file) };

@@ -82,9 +82,10 @@ function Game:drop(saved)
 end
 
 function Game:hash()
-    local hash = ls.out("hash")
+    -- Not an item of `ls.out("hash")`, which would be a reference to memory that LuaJIT frees.
+    local hash = ffi.new("ls2d_hash")
     ls.world_hash(self.world, hash)
-    return hash[0]
+    return hash
 end
 
 function Game:encode()

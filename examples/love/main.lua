@@ -87,7 +87,9 @@ function love.update()
         end
     end
     local status = driver:status()
-    if status == ls.MATCH_FINISHED and not final_hash then
+    local _, final = driver:ticks()
+    -- Ticks with final inputs may not be played yet.
+    if status == ls.MATCH_FINISHED and driver.tick == final and not final_hash then
         final_hash = ls.hex(game:hash())
         print(("%d ticks: %s"):format(driver.tick, final_hash))
         ls.match_leave(driver.match)
@@ -134,7 +136,9 @@ function love.draw()
 end
 
 function love.quit()
-    if driver:status() ~= ls.MATCH_CLOSED then
+    local status = driver:status()
+    -- A game that still requests to join has no match to leave.
+    if status ~= ls.MATCH_CLOSED and status ~= ls.MATCH_CONNECTING then
         ls.match_leave(driver.match)
         driver:update(love.timer.getTime(), read_keys)
     end

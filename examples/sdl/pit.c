@@ -243,7 +243,9 @@ int main(int argc, char **argv) {
     size_t count;
     SDL_Window *window;
     SDL_Renderer *renderer;
-    int i, is_over = 0;
+    /* A click waits for the next tick, because some iterations of the loop play none. */
+    SDL_Point click;
+    int i, is_click = 0, is_over = 0;
 
     for (i = 1; i + 1 < argc; i += 2) {
         if (strcmp(argv[i], "--replay") == 0) {
@@ -275,8 +277,6 @@ int main(int argc, char **argv) {
 
     while (!is_over && ticks < ticks_max) {
         SDL_Event event;
-        SDL_Point click;
-        int is_click = 0;
         while (SDL_PollEvent(&event)) {
             if (event.type == SDL_QUIT || (event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE)) {
                 is_over = 1;
@@ -297,6 +297,7 @@ int main(int argc, char **argv) {
             }
         }
         play(commands, world, bodies[3], SDL_GetKeyboardState(NULL), is_click ? &click : NULL);
+        is_click = 0;
         check(ls2d_recording_step(recording, commands));
         ticks++;
         check(ls2d_free(world));

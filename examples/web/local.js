@@ -60,6 +60,8 @@ setInterval(() => {
 }, 4);
 const frame = () => {
     peers.forEach((peer) => peer.draw());
+    // A recording that begins late in the match misses inputs.
+    element("save").disabled = recording.broken;
     requestAnimationFrame(frame);
 };
 requestAnimationFrame(frame);

@@ -29,6 +29,8 @@ function frame() {
     const { status, tick, final, seats, desyncs, direct } = player.state();
     player.guess = element("rollback").checked ? 8 : 0;
     draw(element("canvas"), player.game, 36);
+    // A player who has joined late has no inputs of the first ticks, and therefore no replay.
+    element("save").disabled = player.recording.broken;
     const others = player.relay.others.length;
     const line = player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : "no connection to the relay";
     element("text").textContent = `${status}, seat ${seats.join(" ")}, tick ${tick}, final ${final}\n${line}\n${player.game.hash()}` +
@@ -41,6 +43,8 @@ function save() {
     link.href = URL.createObjectURL(new Blob([player.recording.finish()]));
     link.download = "push.replay";
     link.click();
+    // The recording has ended, also if the match has not.
+    element("save").textContent = `Save the replay of ${player.recording.ticks} ticks`;
 }
 
 const verify = (bytes) => verifyReplay(bytes).text;

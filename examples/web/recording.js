@@ -8,6 +8,7 @@ export class MatchRecording {
     #commands = new Commands();
     #recording;
     #parts = [];
+    #file;
     /** Number of recorded ticks. */
     ticks = 0;
     /** Whether ticks are missing, for example because this peer has joined late. */
@@ -19,9 +20,10 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the final ticks so far. Call it every few seconds, because the match keeps inputs only for minutes. */
+    /** Records the final ticks so far. Call it every few seconds, because the match keeps inputs only for minutes. Has
+     * no effect after `finish`. */
     follow(match) {
-        if (this.broken || match.status === "connecting") {
+        if (this.broken || this.#file !== undefined || match.status === "connecting") {
             return;
         }
         for (const { confirmed } = match.ticks(); this.ticks < confirmed; this.ticks++) {
@@ -41,7 +43,13 @@ export class MatchRecording {
         }
     }
 
+    /** The replay of the recorded ticks. Ends the recording; further calls return that replay again. */
     finish() {
+        this.#file ??= this.#finish();
+        return this.#file;
+    }
+
+    #finish() {
         const parts = [...this.#parts, this.#recording.finish()];
         const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
         parts.reduce((at, part) => (bytes.set(part, at), at + part.length), 0);

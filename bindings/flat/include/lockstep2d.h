@@ -31,9 +31,10 @@ typedef int32_t ls2d_status;
 typedef uint32_t ls2d_handle;
 
 /* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | refuses floats,
- * which the conversion to int64_t would truncate without an error. */
+ * which the conversion to int64_t would truncate without an error. Both numbers are converted, because a division by an
+ * unsigned one would be unsigned. */
 #define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
-#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / ((denominator) | 0)))
+#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / (int64_t)((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)LS2D_FX_RATIO(whole, 360))
 /* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */

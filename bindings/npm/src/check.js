@@ -7,6 +7,9 @@ export function fail(message) {
     throw new Lockstep2dError("VALUE", message);
 }
 
+/** Refuses an argument that is missing: `write` would skip it, and the function would read old memory or a default. */
+export const given = (value, what) => (value === undefined ? fail(`${what} is missing`) : value);
+
 /** Formats a value for the text of an error. */
 export function shown(value) {
     switch (typeof value) {

@@ -1,5 +1,5 @@
 // Definitions of shapes, bodies, joints and worlds, and their structs.
-import { array, fail, flag, object, onlyKnown, shown } from "./check.js";
+import { array, fail, flag, given, object, onlyKnown, shown } from "./check.js";
 import { Fx, rawOf, vectorOf } from "./fx.js";
 import { C } from "./layout.js";
 import { call, copy as copyOf, fieldAt, fxAt, list, optionsOf, putBytes, putRaw, scratch, sizeOf, statusOf, u32, write } from "./library.js";
@@ -240,9 +240,11 @@ function checkJoint(options, known) {
         fail("`motor` of a joint needs `max`, its largest force or torque");
     }
     for (const name of ["limit", "springForce", "teeth", "wheels"]) {
-        if (options[name] !== undefined && array(options[name], name).length !== 2) {
-            fail(`${name} has 2 items, and not ${options[name].length}`);
+        const items = options[name] === undefined ? [0, 0] : array(options[name], name);
+        if (items.length !== 2) {
+            fail(`${name} has 2 items, and not ${items.length}`);
         }
+        items.forEach((item, index) => given(item, `${name}[${index}]`));
     }
 }
 

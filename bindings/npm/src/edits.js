@@ -1,5 +1,5 @@
 // Edits of a world, executed at once or collected in a list of commands.
-import { array, fail, long, object, onlyKnown } from "./check.js";
+import { array, fail, given, long, object, onlyKnown } from "./check.js";
 import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from "./definitions.js";
 import { bitsOf, rawOf, vectorOf } from "./fx.js";
 import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
@@ -21,8 +21,7 @@ export class Edits extends Handle {
     spawnEach(options, poses) {
         const placed = array(poses, "poses").map((pose, index) => {
             const { position, angle = 0 } = onlyKnown(pose, ["position", "angle"], `pose ${index}`);
-            // `write` would skip an undefined position.
-            return position === undefined ? fail(`pose ${index} has no position`) : { position, angle };
+            return { position: given(position, `the position of pose ${index}`), angle };
         });
         const size = sizeOf("pose");
         const room = placed.length * (size + 8);

@@ -21,7 +21,9 @@ async function inlined(load) {
     const { default: text } = await load();
     const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
     if (typeof DecompressionStream === "undefined") {
-        const { gunzipSync } = await import(/* webpackIgnore: true */ /* @vite-ignore */ `node:${"zlib"}`);
+        const { gunzipSync } = await import(/* webpackIgnore: true */ /* @vite-ignore */ `node:${"zlib"}`).catch(() => {
+            throw new Lockstep2dError("INIT", "there is no DecompressionStream here; pass the module as option `wasm`");
+        });
         return gunzipSync(packed);
     }
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));

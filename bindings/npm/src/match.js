@@ -216,8 +216,10 @@ export class MatchDriver {
     #send;
     #saves = new Map();
     #tick = 0;
+    #events = [];
     #isFinished = false;
     #failure;
+    #sendError;
 
     constructor(match, game, send) {
         this.#match = instance(match, Match, "the match");
@@ -235,7 +237,12 @@ export class MatchDriver {
     }
 
     get ended() {
-        return this.#isFinished && this.#tick === this.#match.ticks().final;
+        // After `ask`, the numbers of ticks are those of no match until the state arrives.
+        return this.#isFinished && this.#match.status !== "connecting" && this.#tick === this.#match.ticks().final;
+    }
+
+    get sendError() {
+        return this.#sendError;
     }
 
     receive(now, from, packet) {
@@ -247,41 +254,66 @@ export class MatchDriver {
         if (this.#failure !== undefined) {
             throw this.#failure.error;
         }
+        let missing;
         try {
-            return this.#update(now, readInputs);
+            missing = this.#update(now, readInputs);
         } catch (error) {
             this.#failure = { error };
             throw error;
         }
+        if (missing !== undefined) {
+            throw missing.error;
+        }
+        return this.#events.splice(0);
     }
 
     #update(now, readInputs) {
         this.#match.update(now);
-        const events = [];
         for (let event = this.#match.nextEvent(); event !== undefined; event = this.#match.nextEvent()) {
             if (event.kind === "state") {
                 this.#resume(event.tick, event.state);
             }
             this.#isFinished ||= event.status === "finished";
-            events.push(event);
+            this.#events.push(event);
         }
         this.#fulfil();
+        const missing = this.#play(now, readInputs);
+        if (this.#match.wantsState) {
+            this.#offer();
+        }
+        this.#transmit();
+        return missing;
+    }
+
+    // Plays the ticks that are due. An error because of the inputs is returned, not thrown: no inputs were issued, so
+    // the match is as before, and continues with the next inputs.
+    #play(now, readInputs) {
         while (this.#match.isDue(now)) {
             const seats = this.#match.seats;
-            const issued = this.#match.advance(now, seats.length === 0 ? new Uint8Array() : readInputs(seats));
+            let issued;
+            try {
+                issued = this.#match.advance(now, seats.length === 0 ? new Uint8Array() : readInputs(seats));
+            } catch (error) {
+                return { error };
+            }
             const before = this.#tick;
             this.#fulfil();
             if (!issued && this.#tick === before) {
                 break;
             }
         }
-        if (this.#match.wantsState) {
-            this.#offer();
-        }
+        return undefined;
+    }
+
+    // A data channel throws when its other end is gone. The packet is then lost, as packets may be.
+    #transmit() {
         for (let sent = this.#match.nextPacket(); sent !== undefined; sent = this.#match.nextPacket()) {
-            this.#send(sent.to, sent.packet);
+            try {
+                this.#send(sent.to, sent.packet);
+            } catch (error) {
+                this.#sendError = error;
+            }
         }
-        return events;
     }
 
     #keep(tick) {
@@ -300,6 +332,7 @@ export class MatchDriver {
 
     #resume(tick, state) {
         this.#game.decode(state);
+        this.#isFinished = false;
         this.#tick = tick;
         this.#forget(() => true);
         this.#keep(tick);

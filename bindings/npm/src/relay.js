@@ -8,6 +8,14 @@ const SECRET = 16;
 const PAUSE_MIN = 250;
 // Longest pause in milliseconds.
 const PAUSE_MAX = 8000;
+// Longest wait for the list of members after a connection was opened, in milliseconds.
+const CONNECT_MAX = 10_000;
+// Time in milliseconds without a frame after which the relay is asked for an answer.
+const ASK_AFTER = 5000;
+// Time in milliseconds without an answer after which the connection counts as lost.
+const LOST_AFTER = 10_000;
+// Interval in milliseconds at which silence is checked.
+const WATCH = 1000;
 // Largest number of bytes that wait to be sent.
 const BUFFERED_MAX = 512 * 1024;
 // Close codes without reconnection: a wrong secret, and another connection of the same member.
@@ -22,6 +30,11 @@ export class Relay {
     #socket;
     #pause = PAUSE_MIN;
     #timer;
+    #watcher;
+    // Times of the last frame and, since then, of the question; whether the relay has sent the list of members.
+    #heard;
+    #asked;
+    #entered = false;
     #closed = false;
     #ready;
     own;
@@ -51,7 +64,6 @@ export class Relay {
             relay.close();
             throw error;
         }
-        relay.#ready = undefined;
         return relay;
     }
 
@@ -69,31 +81,81 @@ export class Relay {
         const socket = new this.#WebSocket(this.#url);
         socket.binaryType = "arraybuffer";
         this.#socket = socket;
+        this.#entered = false;
+        this.#hear();
+        this.#watcher ??= setInterval(() => this.#watch(), WATCH);
         socket.onopen = () => socket.send(this.#secret);
-        socket.onmessage = ({ data }) => (typeof data === "string" ? this.#members(JSON.parse(data)) : this.#packet(new Uint8Array(data)));
+        socket.onmessage = ({ data }) => socket === this.#socket && this.#frame(data);
         // The package `ws` throws errors without a listener.
         socket.onerror = () => {};
         socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
     }
 
+    #hear() {
+        this.#heard = performance.now();
+        this.#asked = undefined;
+    }
+
+    // A page cannot send pings, and the socket of a dead connection stays open for minutes. The relay returns a
+    // datagram to its own sender, so an empty one is the question. Only a question without an answer shows that the
+    // connection is lost, so that a page that was suspended keeps its connection.
+    #watch() {
+        if (this.#socket === undefined) {
+            return;
+        }
+        const now = performance.now();
+        if (!this.#entered) {
+            now - this.#heard < CONNECT_MAX || this.#abandon();
+        } else if (this.#asked !== undefined) {
+            now - this.#asked < LOST_AFTER || this.#abandon();
+        } else if (now - this.#heard >= ASK_AFTER) {
+            this.#asked = now;
+            this.send(this.own, new Uint8Array());
+        }
+    }
+
+    // Does not wait for the end of the socket, because the other side may never confirm it.
+    #abandon() {
+        const socket = this.#socket;
+        this.#lost(1006, "it does not answer");
+        socket.close();
+    }
+
+    #frame(data) {
+        this.#hear();
+        if (typeof data === "string") {
+            this.#members(JSON.parse(data));
+        } else {
+            this.#packet(new Uint8Array(data));
+        }
+    }
+
     #members({ you, others }) {
         this.#pause = PAUSE_MIN;
+        this.#entered = true;
         this.own = addressOf(you);
         this.others = others.map(addressOf);
         this.#ready?.resolve();
+        this.#ready = undefined;
         this.onMembers(this.others);
     }
 
     #packet(bytes) {
-        if (bytes.length >= ADDRESS) {
+        const isAnswer = bytes.length === ADDRESS && this.own?.every((byte, index) => byte === bytes[index]);
+        if (bytes.length >= ADDRESS && !isAnswer) {
             this.onPacket(bytes.slice(0, ADDRESS), bytes.slice(ADDRESS));
         }
     }
 
     #lost(code, reason) {
-        this.#ready?.reject(new Lockstep2dError("RELAY", `the relay cannot be used: ${reason || `code ${code}`}`));
+        this.#socket = undefined;
+        if (this.#ready !== undefined) {
+            this.#ready.reject(new Lockstep2dError("RELAY", `the relay cannot be used: ${reason || `code ${code}`}`));
+            return;
+        }
         if (this.#closed || FINAL.includes(code)) {
             this.#closed = true;
+            clearInterval(this.#watcher);
             return;
         }
         this.#timer = setTimeout(() => this.#open(), this.#pause);
@@ -113,6 +175,7 @@ export class Relay {
     close() {
         this.#closed = true;
         clearTimeout(this.#timer);
+        clearInterval(this.#watcher);
         this.#socket?.close();
     }
 }

@@ -1,5 +1,5 @@
 // Worlds and snapshots.
-import { count as u32Of, fail, instance, object, shown } from "./check.js";
+import { count as u32Of, fail, given, instance, object, shown } from "./check.js";
 import { BODY_FLAGS, writeConfig, writeFilter, writeShape } from "./definitions.js";
 import { rawOf, vectorOf } from "./fx.js";
 import { readJoint } from "./joints.js";
@@ -302,7 +302,7 @@ export class World extends Edits {
 
     #probe(at, shape, position, angle = 0) {
         call("ls2d_probe_init", C.CIRCLE, at);
-        write("probe", at, { position, angle });
+        write("probe", at, { position: given(position, "position"), angle });
         writeShape(fieldAt("probe", at, "shape"), shape);
     }
 
@@ -333,7 +333,7 @@ export class World extends Edits {
 
     overlapBox(lower, upper, filter) {
         return this.#overlaps(32 + FILTER(), (shapes, capacity, count, before) => {
-            write("aabb", before, { lower, upper });
+            write("aabb", before, { lower: given(lower, "lower"), upper: given(upper, "upper") });
             return library().ls2d_overlap_box(this.handle, before, filterAt(before + 32, filter), shapes, capacity, count);
         });
     }

@@ -50,6 +50,35 @@ test("a missing argument is an error with a code", () => {
     assert.equal(L.fx(-(2 ** 31)).toString(), "-2147483648");
 });
 
+test("a query needs its whole place", () => {
+    const w = world();
+    w.spawn({ position: [5, 5], shapes: [L.circle(1)] });
+    for (const call of [
+        // The second of two calls would find the arguments of the first in memory.
+        () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox([-2, -2])],
+        () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox(undefined, [9, 9])],
+        () => w.overlapBox(), () => w.overlapShape(L.circle(1)), () => w.castShape(L.circle(1), undefined, [1, 0]),
+        () => w.castShape(L.circle(1), [0, 0]), () => w.closest([0, 0]), () => w.castRay([0, 0]),
+        () => w.overlapPoint(), () => w.spawnEach({}, [{}]),
+    ]) {
+        assert.throws(call, { code: "VALUE" }, String(call));
+    }
+});
+
+test("a pair of numbers of a joint has both", () => {
+    const w = world();
+    const [a, b] = [0, 2].map((x) => w.spawn({ position: [x, 5], shapes: [L.circle("0.5")] }));
+    for (const wrong of [
+        { type: "revolute", limit: [undefined, 1] }, { type: "revolute", limit: [0, undefined] },
+        { type: "gear", teeth: [undefined, 7] }, { type: "distance", spring: { hertz: 1 }, springForce: [, 7] },
+        { type: "pulley", length: 9, wheels: [undefined, [1, 10]] },
+    ]) {
+        const expected = { code: "VALUE", message: /\[[01]\] is missing/ };
+        assert.throws(() => w.addJoint({ ...wrong, a, b }), expected, JSON.stringify(wrong));
+    }
+    assert.equal(w.joints().length, 0);
+});
+
 test("a joint needs both of its bodies and knows its options", () => {
     const w = world();
     const [a, b] = [0, 2].map((x) => w.spawn({ position: [x, 5], shapes: [L.circle("0.5")] }));

@@ -52,6 +52,9 @@ class Net {
         const index = this.peers.length;
         const match = new L.Match({ seats: 3, tickRate: 60, guess: 8, peer: index + 1, key: BigInt(index + 1), ...options });
         const send = (to, packet) => {
+            if (this.failure !== undefined) {
+                throw this.failure;
+            }
             if (this.random.below(100) >= 5) {
                 this.flying.push({ at: this.now + 20 + this.random.below(40), from: index, to: to[0], packet });
             }
@@ -186,6 +189,36 @@ test("an error of the game stops the driver", () => {
     assert.equal(driver.tick, tick);
 });
 
+test("a packet is lost if it cannot be sent", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 2 });
+    const guest = net.add({ contact: address(0) });
+    net.run(1000);
+    const { tick } = host.driver;
+    // RTCDataChannel.send throws this error if the other page was closed.
+    net.failure = new DOMException("the channel is closed", "InvalidStateError");
+    net.run(100);
+    assert.equal(host.driver.sendError, net.failure);
+    net.failure = undefined;
+    net.run(1000);
+    assert.ok([host, guest].every(({ driver }) => driver.tick > tick + 40), `${host.driver.tick} ticks, from ${tick}`);
+    assert.deepEqual([host.match.status, guest.match.status], ["playing", "playing"]);
+});
+
+test("a match goes on after an error of the inputs, without a loss of events", () => {
+    const game = { step: () => {}, save: () => 0, load: () => {}, hash: () => "0".repeat(32) };
+    const driver = new L.MatchDriver(new L.Match({ seats: 1 }), game, () => {});
+    const broken = () => { throw new Error("no gamepad"); };
+    for (const wrong of [broken, () => [0], () => new Uint8Array(2), () => undefined]) {
+        assert.throws(() => { for (let now = 0; now < 100; now += 10) driver.update(now, wrong); });
+    }
+    assert.equal(driver.tick, 0);
+    const events = [];
+    for (let now = 100; now < 300; now += 10) events.push(...driver.update(now, () => Uint8Array.of(0)));
+    assert.ok(driver.tick > 10, `${driver.tick} ticks`);
+    assert.ok(events.some(({ status }) => status === "playing"), "an event of the update that failed");
+});
+
 test("a match ends for the game when it has played all ticks", () => {
     const game = { step: () => {}, save: () => 0, load: () => {}, hash: () => "0".repeat(32) };
     const match = new L.Match({ seats: 1 });
@@ -195,6 +228,34 @@ test("a match ends for the game when it has played all ticks", () => {
     for (let now = 0; now < 5000 && !driver.ended; now += 10) driver.update(now, () => Uint8Array.of(0));
     assert.ok(driver.ended);
     assert.equal(driver.tick, 30);
+});
+
+test("after the end of a match, a driver joins another one", () => {
+    const net = new Net();
+    const [host, guest] = [net.add({ startWith: 1 }), net.add({ ownSeats: 0, contact: address(0) })];
+    host.match.endAt(60);
+    net.run(6000);
+    assert.deepEqual([host, guest].map(({ driver }) => driver.ended), [true, true]);
+    const [other] = [net.add({ startWith: 2 }), net.add({ contact: address(2) })];
+    net.run(1000);
+    guest.match.ask(address(2));
+    assert.deepEqual([guest.match.status, guest.driver.ended], ["connecting", false]);
+    net.run(2000);
+    assert.deepEqual([guest.match.status, guest.driver.ended], ["watching", false]);
+    const { tick } = guest.driver;
+    assert.ok(tick > 60 && Math.abs(tick - other.driver.tick) < 20, `${tick} ticks, and ${other.driver.tick}`);
+    // A spectator has played all final ticks in some updates.
+    let isLevel = false;
+    for (let i = 0; i < 250; i++) {
+        net.run(4);
+        isLevel ||= guest.driver.tick === guest.match.ticks().final;
+        assert.equal(guest.driver.ended, false);
+    }
+    assert.ok(isLevel);
+    other.match.endAt(other.driver.tick + 200);
+    net.run(8000);
+    assert.deepEqual([guest.driver.ended, guest.driver.tick], [true, other.driver.tick]);
+    assert.equal(guest.game.hash(), other.game.hash());
 });
 
 test("only a finished match has ended, also once it is closed", () => {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { inspect } from "node:util";
-import { L } from "./common.mjs";
+import { L, fallingBox, file } from "./common.mjs";
 import { library, fxAt, giveText, scratch, call } from "../src/library.js";
 
 const random = new L.Random(7);
@@ -82,4 +82,14 @@ test("numbers and angles have no operators", () => {
     ]) {
         assert.throws(call, { code: "FLOAT", message: /has no operators: use add, sub/ }, String(call));
     }
+});
+
+test("the README tells how a body is written as JSON", () => {
+    const { world, box } = fallingBox();
+    const readme = new TextDecoder().decode(file("bindings/npm/README.md"));
+    const [, replacer] = /JSON\.stringify\(world\.body\(crate\), (.*)\);/.exec(readme);
+    const text = JSON.stringify(world.body(box), new Function(`return ${replacer}`)());
+    const { position, userData, type } = JSON.parse(text);
+    assert.deepEqual([position, userData, type], [{ x: "0", y: "3" }, "0", "dynamic"]);
+    assert.equal(L.fx(position.y).raw, world.body(box).position.y.raw);
 });

@@ -42,7 +42,10 @@ while (match.status !== "closed") {
         counts[event.kind] = (counts[event.kind] ?? 0) + 1;
         if (event.kind === "status") {
             statuses.push(event.status);
-            event.status === "playing" && statuses.length === 1 && console.log(JSON.stringify({ playing: driver.tick }));
+            // The first status may be another one, such as `waiting`, on a machine with much to do.
+            if (statuses.indexOf("playing") === statuses.length - 1) {
+                console.log(JSON.stringify({ playing: driver.tick }));
+            }
         }
         if (event.kind === "state") {
             joinedAt = event.tick;

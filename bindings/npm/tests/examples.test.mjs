@@ -1,0 +1,34 @@
+// The parts of examples/web that need no page.
+import assert from "node:assert/strict";
+import { register } from "node:module";
+import { test } from "node:test";
+import { L } from "./common.mjs";
+
+// The examples import the package by its name.
+const source = JSON.stringify(new URL("../src/index.js", import.meta.url).href);
+register(`data:text/javascript,${encodeURIComponent(`export const resolve = (name, context, next) =>
+    name === "lockstep2d" ? { url: ${source}, shortCircuit: true } : next(name, context);`)}`);
+const { MatchRecording } = await import("../../../examples/web/recording.js");
+
+/** A match whose first ticks, up to `kept`, are no longer known. */
+const matchOf = (confirmed, kept = 0) => ({
+    status: "playing",
+    ticks: () => ({ confirmed }),
+    finalInputs: (tick) => (tick < kept ? undefined : { inputs: Uint8Array.of(tick % 8, 1, 0, 2), absent: 0n }),
+});
+
+test("a replay that is saved during the match ends there, and the match goes on", () => {
+    const recording = new MatchRecording();
+    recording.follow(matchOf(90));
+    const file = recording.finish();
+    const { verdict, ticks } = L.verifyReplay(file);
+    assert.deepEqual([verdict, ticks], ["match", 90]);
+    recording.follow(matchOf(200));
+    assert.deepEqual([recording.finish(), recording.ticks, recording.broken], [file, 90, false]);
+});
+
+test("a recording without the first ticks is broken", () => {
+    const recording = new MatchRecording();
+    recording.follow(matchOf(90, 5));
+    assert.deepEqual([recording.broken, recording.ticks], [true, 0]);
+});

@@ -1,0 +1,127 @@
+// A member of a room notices that its connection is dead. The WebSocket and the clock belong to the test.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { L } from "./common.mjs";
+
+const [YOU, OTHER] = ["0102030405060708", "1112131415161718"];
+const bytesOf = (digits) => [...Buffer.from(digits, "hex")];
+
+/** A socket that ends only when the test says so, like that of a dead connection. */
+class Socket {
+    static all = [];
+    readyState = 0;
+    bufferedAmount = 0;
+    sent = [];
+
+    constructor() {
+        Socket.all.push(this);
+    }
+
+    enter() {
+        this.readyState = 1;
+        this.onopen();
+        this.onmessage({ data: JSON.stringify({ you: YOU, others: [OTHER] }) });
+    }
+
+    frame(from, datagram = []) {
+        this.onmessage({ data: Uint8Array.of(...bytesOf(from), ...datagram).buffer });
+    }
+
+    send(data) {
+        this.sent.push([...data]);
+    }
+
+    close() {
+        this.readyState = 2;
+    }
+}
+
+/** Returns a function that lets time pass, in seconds. */
+function clock(t) {
+    let now = 1000;
+    Socket.all = [];
+    t.mock.timers.enable({ apis: ["setTimeout", "setInterval"] });
+    t.mock.method(performance, "now", () => now);
+    return (seconds) => {
+        for (let i = 0; i < 10 * seconds; i++) {
+            now += 100;
+            t.mock.timers.tick(100);
+        }
+    };
+}
+
+async function enter() {
+    const connecting = L.Relay.connect("wss://relay.example", "ABCD", { WebSocket: Socket });
+    Socket.all.at(-1).enter();
+    const relay = await connecting;
+    const packets = [];
+    relay.onPacket = (from, packet) => packets.push([...packet]);
+    return { relay, packets, socket: Socket.all.at(-1) };
+}
+
+test("a silent relay is asked, and its answer is no packet", async (t) => {
+    const pass = clock(t);
+    const { relay, packets, socket } = await enter();
+    pass(4);
+    assert.equal(socket.sent.length, 1, "only the secret");
+    for (let i = 2; i < 6; i++) {
+        pass(6);
+        assert.deepEqual([socket.sent.length, socket.sent.at(-1)], [i, bytesOf(YOU)]);
+        socket.frame(YOU);
+    }
+    socket.frame(OTHER, [7]);
+    socket.frame(OTHER);
+    socket.frame(YOU, [8]);
+    assert.deepEqual([packets, Socket.all.length, relay.isOpen], [[[7], [], [8]], 1, true]);
+    relay.close();
+});
+
+test("a connection without an answer is opened again", async (t) => {
+    const pass = clock(t);
+    const { relay, packets, socket: dead } = await enter();
+    const members = t.mock.fn();
+    relay.onMembers = members;
+    pass(14);
+    assert.equal(relay.isOpen, true);
+    pass(3);
+    assert.deepEqual([dead.readyState, Socket.all.length, relay.isOpen], [2, 2, false]);
+    const again = Socket.all[1];
+    again.enter();
+    assert.deepEqual([relay.isOpen, members.mock.callCount(), again.sent], [true, 1, dead.sent.slice(0, 1)]);
+    // The first socket reports its end, with the code of a member that has connected again, minutes later.
+    dead.frame(OTHER, [1]);
+    dead.onclose({ code: 4003, reason: "" });
+    again.frame(OTHER, [2]);
+    assert.deepEqual([packets, relay.isOpen], [[[2]], true]);
+    // A relay that accepts connections, and then sends nothing.
+    pass(16);
+    assert.equal(Socket.all.length, 3);
+    pass(11);
+    assert.equal(Socket.all.length, 4);
+    relay.close();
+    pass(60);
+    assert.equal(Socket.all.length, 4);
+});
+
+test("a page that was suspended keeps its connection", async (t) => {
+    const pass = clock(t);
+    const { relay, socket } = await enter();
+    const { now } = performance;
+    t.mock.method(performance, "now", () => now() + 3_600_000);
+    pass(1);
+    assert.deepEqual([socket.sent.at(-1), relay.isOpen], [bytesOf(YOU), true]);
+    socket.frame(YOU);
+    pass(4);
+    assert.deepEqual([Socket.all.length, relay.isOpen], [1, true]);
+    relay.close();
+});
+
+test("a relay that does not answer cannot be entered", async (t) => {
+    const pass = clock(t);
+    const connecting = L.Relay.connect("wss://relay.example", "ABCD", { WebSocket: Socket });
+    const refused = assert.rejects(connecting, { code: "RELAY", message: /not answer/ });
+    pass(11);
+    await refused;
+    pass(60);
+    assert.deepEqual(Socket.all.map(({ readyState }) => readyState), [2]);
+});
