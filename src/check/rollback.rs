@@ -44,7 +44,7 @@ impl<G: Game> Past<G> {
         if !now.options.is_due(now.tick) {
             return Ok(());
         }
-        let turn = now.tick / u64::from(now.options.every.max(1));
+        let turn = now.tick / now.options.every.max(1);
         for (depth, guess) in rollbacks(now.options.depths, depth_max, turn) {
             let last = self.moments.len() - 1;
             // Near the start, fewer states are recorded.

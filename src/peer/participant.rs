@@ -314,7 +314,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Sends the request to join to this contact, for example after a time without an answer. Discards a session in
-    /// progress.
+    /// progress; the new one has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
     }

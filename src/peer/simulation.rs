@@ -58,7 +58,7 @@ impl<G: Game> Simulation<G> {
     }
 
     /// Continues from a received state. If the state is later than tick 0, there is no replay, for lack of the earlier
-    /// inputs.
+    /// inputs. A replay that has ticks is of another match, or of a part of this one.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
@@ -66,8 +66,9 @@ impl<G: Game> Simulation<G> {
         if self.game.state_hash() != hash {
             return Err(wrong(&"it does not have the stated hash"));
         }
-        if tick > 0 {
+        if tick > 0 || self.committed > 0 {
             self.recorder = None;
+            self.taken.clear();
         }
         self.history = History::of_ticks(u32::try_from(self.history.capacity()).unwrap_or(u32::MAX));
         self.history.push(tick, save, hash);

@@ -82,7 +82,7 @@ pub struct Config {
     pub input_bytes: u16,
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
-    /// Number of seats that must be taken before the first tick, at most `seats`.
+    /// Number of seats that must be taken before the first tick, at most `seats`. That of the tie-holder counts.
     pub start_with: u8,
     /// Bit for each seat that this peer asks for; 0 for any free seats.
     pub seats_wanted: u64,

@@ -156,16 +156,26 @@ pub struct Identity {
     pub id: PeerId,
     /// The identity that outlives processes.
     pub key: Key,
-    /// Handshake data that must be equal for all peers: versions, rules, setup. Truncated to [`OFFER_BYTES_MAX`] bytes.
+    /// Handshake data that must be equal for all peers: versions, rules, setup. At most [`OFFER_BYTES_MAX`] bytes.
     pub offer: Vec<u8>,
     /// 16 random bytes, unknown to others: the key of handshake cookies and probe tokens.
     pub secret: [u64; 2],
 }
 
+fn in_range(field: &'static str, value: u64, max: u64) -> Result<(), ConfigError> {
+    let error = ConfigError { field, value, min: 0, max, step: 1 };
+    if value <= max { Ok(()) } else { Err(error) }
+}
+
+fn validate(config: &Config, identity: &Identity) -> Result<(), ConfigError> {
+    config.validate()?;
+    let bytes = u64::try_from(identity.offer.len()).unwrap_or(u64::MAX);
+    in_range("bytes of the offer", bytes, OFFER_BYTES_MAX as u64)
+}
+
 impl Endpoint {
     fn new(config: Config, identity: Identity, role: Role, phase: Phase, contact: Option<Address>) -> Self {
-        let Identity { id, key, mut offer, secret } = identity;
-        offer.truncate(OFFER_BYTES_MAX);
+        let Identity { id, key, offer, secret } = identity;
         Endpoint {
             config,
             me: id,
@@ -188,10 +198,12 @@ impl Endpoint {
     /// Opens a match. `seats` has a bit for each seat of this peer; it is 0 for a dedicated server.
     ///
     /// # Errors
-    /// [`ConfigError`] if a parameter is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range, or the match does not have a seat.
     pub fn host(config: Config, identity: Identity, seats: u64) -> Result<Self, ConfigError> {
+        validate(&config, &identity)?;
+        in_range("bits of the own seats", seats, config.seat_set())?;
         let begun = u32::from(config.start_with) <= seats.count_ones();
-        let view = View::opened_by(identity.id, identity.key, seats & config.seat_set(), begun);
+        let view = View::opened_by(identity.id, identity.key, seats, begun);
         let role = match u8::try_from(seats.count_ones()).unwrap_or(0) {
             0 => Role::Spectator,
             seats => Role::Player { seats },
@@ -211,17 +223,23 @@ impl Endpoint {
         role: Role,
         contact: Address,
     ) -> Result<Self, ConfigError> {
-        config.validate()?;
+        validate(&config, &identity)?;
         let mut endpoint = Endpoint::new(config, identity, role, Phase::Refused, Some(contact));
         endpoint.ask(contact);
         Ok(endpoint)
     }
 
-    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress.
+    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress;
+    /// the new one has another incarnation and the same key.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         // Each attempt has another nonce, so that the contact begins anew as well.
         self.attempts = self.attempts.wrapping_add(1);
+        if self.session().is_some() {
+            // Others have rows and inputs of the discarded session, which the new session does not continue.
+            let [a, b, c, d, ..] = self.secret.hash(&self.attempts.to_le_bytes()).to_le_bytes();
+            self.me = PeerId(u32::from_le_bytes([a, b, c, d]));
+        }
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.attempts);
         self.phase = Phase::Asking { nonce, cookie: 0, next_at: 0 };
     }
@@ -268,6 +286,10 @@ impl Endpoint {
         self.events.pop_front()
     }
 
+    pub(super) fn is_closed(&self) -> bool {
+        self.session().is_some_and(|session| session.status().is_closed())
+    }
+
     pub(super) fn send(&mut self, to: Address, packet: &JoinPacket) {
         let bytes = packet.encode(self.config.match_tag, self.me);
         self.packets.push_back((to, bytes));
@@ -276,7 +298,7 @@ impl Endpoint {
     /// Whether a joining peer waits for a state from [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
-        self.guests.anybody_waits()
+        self.guests.anybody_waits() && !self.is_closed()
     }
 
     /// Offers the state after `tick` ticks to the peers that wait for one. The call is ignored unless all these ticks
@@ -286,7 +308,7 @@ impl Endpoint {
         if tick > session.final_tick() {
             return;
         }
-        let addresses = self.routes.known(usize::MAX);
+        let addresses = self.routes.known(usize::MAX, |id| session.serves(id));
         let start = StartState { view: session.view().clone(), addresses, tick, state };
         self.guests.serve(&Arc::new(Pinned::new(tick, start.encode())));
     }
@@ -315,8 +337,12 @@ impl Endpoint {
             }
             Phase::InMatch(session) => {
                 session.update(now);
-                self.search(now);
-                self.serve(now);
+                if session.status().is_closed() {
+                    self.flush();
+                } else {
+                    self.search(now);
+                    self.serve(now);
+                }
             }
             Phase::Refused => {}
         }
@@ -353,8 +379,8 @@ impl Endpoint {
             self.address_list_at = now + ADDRESS_LIST_INTERVAL;
             let Phase::InMatch(session) = &self.phase else { return };
             self.routes.retain(|id| session.link(id).is_some());
-            let addresses = self.routes.known(ADDRESS_LIST_MAX);
-            let all = self.routes.known(usize::MAX);
+            let addresses = self.routes.known(ADDRESS_LIST_MAX, |id| session.serves(id));
+            let all = self.routes.known(usize::MAX, |id| session.serves(id));
             for (_, address) in &all {
                 self.send(*address, &JoinPacket::AddressList { addresses: addresses.clone() });
             }

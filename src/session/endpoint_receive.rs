@@ -17,6 +17,10 @@ impl Endpoint {
     /// Processes a received packet.
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
+        // A joining peer that gets no answer can ask elsewhere.
+        if self.is_closed() {
+            return;
+        }
         if is_join_packet(body) {
             match JoinPacket::read(body) {
                 Ok((sender, packet)) if sender != self.me || self.concerns_identity(&packet) => {
@@ -175,7 +179,7 @@ impl Endpoint {
             return;
         };
         let mut session = Box::new(session);
-        let contact = self.routes.known(usize::MAX);
+        let contact = self.routes.known(usize::MAX, |_| true);
         for (id, _) in &contact {
             session.attach(*id, None);
         }

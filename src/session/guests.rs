@@ -84,6 +84,9 @@ impl Guests {
             return Some(RefusalReason::Full);
         }
         session.attach(id, Some(key));
+        if session.link(id).is_none() {
+            return Some(RefusalReason::Full);
+        }
         self.list.push(Guest { id, nonce, upload: None, asked: false, welcome_at: 0, heard_at: None });
         None
     }
@@ -121,6 +124,7 @@ impl Guests {
         self.budget = (self.budget + passed * RATE_MAX / 1_000_000).min(BURST * RATE_MAX / 1_000_000);
         let mut packets = Vec::new();
         for guest in &mut self.list {
+            session.attach(guest.id, None);
             let Some(upload) = &mut guest.upload else { continue };
             let since = *guest.heard_at.get_or_insert(now);
             if now >= since.saturating_add(GUEST_PATIENCE) {

@@ -1,5 +1,7 @@
 //! The [`Status`] of a session.
 
+use alloc::vec::Vec;
+
 use super::config::Fault;
 use super::event::{Event, Status};
 use super::id::{PeerId, Tick};
@@ -19,7 +21,8 @@ pub(super) struct Lifecycle {
     /// The peer that play waits for, as last reported.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
-    paused: alloc::vec::Vec<PeerId>,
+    /// Peers that request a pause, as last reported.
+    paused: Vec<PeerId>,
 }
 
 /// Minimum length of a reported stall in ticks.
@@ -42,7 +45,7 @@ impl Lifecycle {
             left: false,
             waiting_for: None,
             too_far_behind: false,
-            paused: alloc::vec::Vec::new(),
+            paused: Vec::new(),
         }
     }
 }
@@ -180,6 +183,9 @@ impl Session {
             && self.clock.active
                 > self.progress.moved_at.saturating_add((WAITING_TICKS * tick).max(self.config.timing.heard));
         let peer = self.waiting_for().filter(|&peer| still && peer != self.me);
+        if peer.is_some() {
+            self.tell_too_far_behind();
+        }
         if peer == self.lifecycle.waiting_for {
             return;
         }
@@ -191,6 +197,10 @@ impl Session {
         let since = self.peers.find(peer).and_then(|remote| remote.fresh);
         let heard = super::peers::within(since, self.config.timing.heard, self.clock.active);
         self.events.push_back(Event::Waiting { peer, heard });
+    }
+
+    /// After an outage the rows of the others, and with them the lag, arrive when the stall has been reported already.
+    fn tell_too_far_behind(&mut self) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
         if behind > self.config.log_ticks && !self.lifecycle.too_far_behind {
@@ -199,19 +209,16 @@ impl Session {
         }
     }
 
+    /// A voter that leaves no longer requests a pause.
     fn tell_pauses(&mut self) {
-        let paused = &mut self.lifecycle.paused;
-        for (_, remote) in self.peers.voters().filter(|(_, remote)| remote.id != self.me) {
-            let asks = remote.row.as_ref().is_some_and(|row| row.paused);
-            let peer = remote.id;
-            match paused.iter().position(|&other| other == peer) {
-                None if asks => paused.push(peer),
-                Some(place) if !asks => {
-                    paused.remove(place);
-                }
-                _ => continue,
-            }
-            self.events.push_back(Event::Pause { peer, paused: asks });
-        }
+        let others = self.peers.voters().map(|(_, remote)| remote).filter(|remote| remote.id != self.me);
+        let asking = others.filter(|remote| remote.row.as_ref().is_some_and(|row| row.paused));
+        let asking: Vec<PeerId> = asking.map(|remote| remote.id).collect();
+        let before = core::mem::replace(&mut self.lifecycle.paused, asking);
+        let now = &self.lifecycle.paused;
+        let ended = before.iter().filter(|peer| !now.contains(peer)).map(|&peer| (peer, false));
+        let begun = now.iter().filter(|peer| !before.contains(peer)).map(|&peer| (peer, true));
+        let events = ended.chain(begun).map(|(peer, paused)| Event::Pause { peer, paused });
+        self.events.extend(events);
     }
 }

@@ -165,7 +165,7 @@ impl Session {
     }
 
     /// Target of the input delay in ticks, from the slowest link to a player: half a round trip, twice the jitter and
-    /// one tick, less [`Config::guess`].
+    /// the interval of packets, less [`Config::guess`].
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);
@@ -174,7 +174,9 @@ impl Session {
             remote.id != self.me && within(remote.heard, fresh, active) && self.view.seats_of(remote.id) != 0
         });
         let latency = players.map(|(_, remote)| remote.link.round_trip / 2 + 2 * remote.link.jitter).max();
-        let needed = latency.unwrap_or(0).div_ceil(tick) + u64::from(latency.is_some());
+        // Inputs wait for the next packet, which large matches do not send in every tick.
+        let packet = (self.send_interval() / tick).max(1);
+        let needed = latency.map_or(0, |latency| latency.div_ceil(tick) + packet);
         let needed = u16::try_from(needed).unwrap_or(most).saturating_sub(self.config.guess);
         needed.clamp(least, most)
     }

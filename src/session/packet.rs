@@ -182,11 +182,13 @@ impl Composer {
         ends
     }
 
-    pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) {
-        self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, RESERVE, rows, |(id, row), bytes| {
+    /// Appends rows of other peers. Returns the number of those that fit.
+    pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) -> usize {
+        let count = self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, RESERVE, rows, |(id, row), bytes| {
             bytes.put_u32(id.0);
             row.write(bytes);
         });
+        usize::from(count)
     }
 
     pub(super) fn finish(mut self, match_tag: u64) -> Vec<u8> {

@@ -8,7 +8,21 @@ use super::row::Row;
 use super::view::{View, bit};
 
 /// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
-pub(super) const PEERS_MAX: usize = 192;
+const PEERS_MAX: usize = 192;
+/// Time for which a peer without a vote is served after its last packet, in microseconds.
+const SERVED: u64 = 5_000_000;
+
+/// The series of runs of a span that do not fit in one packet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Resume {
+    pub(super) span: u16,
+    /// First tick of the next run.
+    pub(super) tick: Tick,
+    /// First tick that the peer lacked when the last run was sent.
+    pub(super) lacks: Tick,
+    /// Time at which the run that begins with this tick was sent, or at which the peer was found to lack it.
+    pub(super) since: u64,
+}
 
 #[derive(Clone, Debug)]
 pub(super) struct Remote {
@@ -22,13 +36,27 @@ pub(super) struct Remote {
     /// Time at which the newest row arrived in which the peer states that it is connected to a quorum. Before such a
     /// row, the time at which the peer became known.
     pub(super) contact: u64,
-    /// Whether the peer is served without a vote.
-    pub(super) attached: bool,
+    /// Time at which the caller last asked to serve the peer.
+    pub(super) attached: Option<u64>,
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
-    /// For each span whose last run did not fit in a packet, the tick at which the next run continues.
-    pub(super) resumes: Vec<(u16, Tick)>,
+    pub(super) resumes: Vec<Resume>,
+    /// The first span and the first foreign row of the next packet to the peer, because the last one had no room.
+    pub(super) next_span: u16,
+    pub(super) next_row: Option<PeerId>,
     pub(super) link: Link,
+}
+
+impl Remote {
+    /// Whether the peer is served even if it has no vote.
+    pub(super) fn is_served(&self, now: u64) -> bool {
+        within(self.heard.max(self.attached), SERVED, now)
+    }
+
+    /// Time of the last sign of life, or the time at which the peer became known.
+    fn known_at(&self) -> Option<u64> {
+        self.fresh.max(self.heard).max(self.attached).max(Some(self.contact))
+    }
 }
 
 /// All known peers. This peer is the first.
@@ -67,15 +95,18 @@ impl Peers {
             fresh: None,
             heard: None,
             contact: now,
-            attached: false,
+            attached: None,
             faulty: false,
             resumes: Vec::new(),
+            next_span: 0,
+            next_row: None,
             link: Link::default(),
         });
     }
 
     pub(super) fn follow(&mut self, view: &View, now: u64) {
         for voter in &view.voters {
+            self.has_room(voter.id, view, now);
             self.add(voter.id, Some(voter.key), now);
         }
         self.index(view);
@@ -86,14 +117,17 @@ impl Peers {
         self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
     }
 
-    pub(super) fn bound(&mut self, view: &View) {
-        while self.list.len() > PEERS_MAX {
-            let silent = |(_, remote): &(usize, &Remote)| remote.fresh.max(remote.heard);
+    /// Makes room for a peer, if need be in the place of the peer without a vote that has been silent longest. Returns
+    /// whether there is room, which requires that the removed peer is no longer served.
+    pub(super) fn has_room(&mut self, id: PeerId, view: &View, now: u64) -> bool {
+        self.find(id).is_some() || self.list.len() < PEERS_MAX || {
             let strangers = self.list.iter().enumerate().skip(1);
-            let oldest = strangers.filter(|(_, remote)| view.voter(remote.id).is_none()).min_by_key(silent);
-            let Some((place, _)) = oldest else { return };
+            let strangers = strangers.filter(|(_, remote)| view.voter(remote.id).is_none());
+            let oldest = strangers.min_by_key(|(_, remote)| remote.known_at());
+            let Some((place, _)) = oldest.filter(|(_, remote)| !remote.is_served(now)) else { return false };
             self.list.remove(place);
             self.index(view);
+            true
         }
     }
 

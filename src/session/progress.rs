@@ -97,8 +97,10 @@ impl Session {
         self.progress.fin = fin;
         if fin - self.progress.cleaned >= CLEAN_INTERVAL {
             self.progress.cleaned = fin;
-            self.progress.follow(&self.view, self.play.needed_from().min(fin));
-            self.log.forget_before(fin.saturating_sub(self.config.log_ticks));
+            // A game that does not advance still needs the inputs of final ticks.
+            let needed = self.play.needed_from().min(fin);
+            self.progress.follow(&self.view, needed);
+            self.log.forget_before(fin.saturating_sub(self.config.log_ticks).min(needed));
         }
     }
 

@@ -85,16 +85,17 @@ impl Session {
             let some = self.peers.rows(number).any(|(_, _, row)| !row.wants.removals.is_empty());
             some && self.view.voters.iter().any(|voter| self.is_removed(voter.id, voter.key))
         };
-        voters || removed() || !ends && (self.seat_wants(number).next().is_some() || self.may_begin())
+        let begins = || {
+            let taken = !self.view.free_seats() & self.config.seat_set();
+            !self.view.begun && self.may_begin(self.view.tie_holder, taken)
+        };
+        voters || removed() || !ends && (self.seat_wants(number).next().is_some() || begins())
     }
 
-    fn may_begin(&self) -> bool {
-        !self.view.begun
-            && (!self.view.free_seats() & self.config.seat_set()).count_ones() >= self.first_seats()
-    }
-
-    fn first_seats(&self) -> u32 {
-        u32::from(self.config.start_with.max(1))
+    /// Whether the match begins once these seats are taken. The tie-holder decides, because peers may have different
+    /// numbers of seats to start with.
+    fn may_begin(&self, tie_holder: PeerId, taken: u64) -> bool {
+        tie_holder == self.me && taken.count_ones() >= u32::from(self.config.start_with.max(1))
     }
 
     /// Fresh rows of voters in this view.
@@ -120,9 +121,17 @@ impl Session {
                     .peers
                     .voters()
                     .any(|(_, voter)| voter.key == Some(want.key) && within(voter.fresh, fresh, active));
-            let fits = may && self.seats_for(want, self.free_after(0)).is_some();
+            let fits = may && self.may_add(want, 0, 0) && self.seats_for(want, self.free_after(0)).is_some();
             fits.then_some((remote.id, want))
         })
+    }
+
+    /// Whether the limits of a view admit a voter with these seats, after the voters in `leaves` and those that are
+    /// replaced have left and `joined` others have joined.
+    fn may_add(&self, want: SeatWant, leaves: u64, joined: usize) -> bool {
+        let gone = usize::try_from((leaves | self.replaced()).count_ones()).unwrap_or(0);
+        self.view.voters.len().saturating_sub(gone) + joined < SEATS_MAX
+            && self.view.spans.len() + usize::from(want.seats) + SEATS_MAX <= SPANS_MAX
     }
 
     /// Bit for each silent voter whose key another incarnation uses to request seats.
@@ -257,7 +266,7 @@ impl Session {
         };
         let taken = keeps(leaves).fold(0, |set, (_, voter)| set | self.view.seats_of(voter.id));
         let taken = joins.iter().fold(taken, |set, join| set | join.seats);
-        let begun = self.view.begun || taken.count_ones() >= self.first_seats() || end.is_some();
+        let begun = self.view.begun || self.may_begin(tie_holder, taken) || end.is_some();
         let lead = if self.view.begun { self.seat_lead(&joins) } else { 0 };
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
@@ -297,13 +306,8 @@ impl Session {
     fn joins(&self, leaves: u64) -> Vec<Join> {
         let mut joins: Vec<Join> = Vec::new();
         let mut free = self.free_after(leaves);
-        let staying =
-            self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
         for (id, want) in self.seat_wants(self.view.number) {
-            let full = joins.len() == JOINS_MAX
-                || staying + joins.len() >= SEATS_MAX
-                || self.view.spans.len() + usize::from(want.seats) + 64 > SPANS_MAX;
-            if full {
+            if joins.len() == JOINS_MAX || !self.may_add(want, leaves, joins.len()) {
                 break;
             }
             if let Some(seats) = self.seats_for(want, free) {

@@ -5,7 +5,6 @@ use super::event::Event;
 use super::id::{PeerId, Tick};
 use super::input_log::Added;
 use super::packet::{self, Packet};
-use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
 
@@ -86,10 +85,11 @@ impl Session {
             return;
         }
         if self.peers.find(id).is_none() {
-            if self.peers.list.len() >= PEERS_MAX || row.wants.seats.is_none() {
+            let active = self.clock.active;
+            if row.wants.seats.is_none() || !self.peers.has_room(id, &self.view, active) {
                 return;
             }
-            self.peers.add(id, None, self.clock.active);
+            self.peers.add(id, None, active);
         }
         self.take_row(id, row);
     }

@@ -107,9 +107,11 @@ impl Routes {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// Up to `most` known addresses. If there are more, successive calls return different ones.
-    pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
-        let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
+    /// Up to `most` known addresses of those peers that matter. If there are more, successive calls return different
+    /// ones.
+    pub(super) fn known(&mut self, most: usize, matters: impl Fn(PeerId) -> bool) -> Vec<(PeerId, Address)> {
+        let routes = self.list.iter().filter(|route| matters(route.id));
+        let known: Vec<_> = routes.filter_map(|route| Some((route.id, route.address?))).collect();
         self.turn = self.turn.wrapping_add(most);
         let start = self.turn.checked_rem(known.len()).unwrap_or(0);
         known.iter().cycle().skip(start).take(most.min(known.len())).copied().collect()

@@ -211,21 +211,22 @@ impl Session {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer without a vote: this peer sends it changes and inputs. A joining peer calls this for the peers
-    /// that it knows.
+    /// Serves a peer without a vote: this peer sends it changes and inputs, for 5 s and as long as packets of that peer
+    /// arrive. A joining peer calls this for the peers that it knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
-        self.peers.add(id, key, active);
-        if let Some(remote) = self.peers.find_mut(id) {
-            remote.attached = true;
+        if self.peers.has_room(id, &self.view, active) {
+            self.peers.add(id, key, active);
         }
-        self.peers.bound(&self.view);
+        if let Some(remote) = self.peers.find_mut(id) {
+            remote.attached = Some(active);
+        }
     }
 
     /// Stops serving a peer without a vote, for example when its connection is closed.
     pub fn detach(&mut self, id: PeerId) {
         if let Some(remote) = self.peers.find_mut(id) {
-            remote.attached = false;
+            remote.attached = None;
             remote.heard = None;
         }
     }
@@ -257,14 +258,14 @@ impl Session {
         }
     }
 
-    /// Votes to remove a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient.
+    /// Votes to remove a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient. A peer has at
+    /// most eight votes: a ninth one ends the oldest, and that peer may return.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest vote is dropped. If its peer has been removed already, that peer may return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }

@@ -7,7 +7,7 @@ use super::config::Fault;
 use super::id::{PeerId, Tick};
 use super::link::stamp;
 use super::packet::{Composer, Header, RESERVE, RUN_TICKS_MAX};
-use super::peers::{Remote, within};
+use super::peers::{Remote, Resume, within};
 use super::row::{Row, STRANGERS_MAX};
 use super::state::Session;
 use super::view::has_bit;
@@ -22,8 +22,6 @@ pub(super) struct Outbox {
 
 /// Maximum number of packets waiting to be sent. The oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
-/// Time for which a peer without a vote is served after its last packet, in microseconds.
-const SERVED: u64 = 5_000_000;
 /// If a receiver lacks more than this number of a peer's inputs, others relay them even if the receiver hears that
 /// peer.
 const HELP_TICKS: Tick = 20;
@@ -33,21 +31,44 @@ const TRY_ROWS: u32 = 8;
 const INTERVAL_MAX: u64 = 100_000;
 /// Bytes of the sender's id before a foreign row.
 const ROW_ID_BYTES: usize = 4;
+/// Maximum number of packets at a time to a receiver that lacks more than [`HELP_TICKS`] inputs of a span.
+const BURST_MAX: usize = 4;
 /// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
-/// Inputs in a packet: span, first tick, inputs.
-type Run<'a> = (u16, Tick, &'a [u8]);
+/// Inputs of a span for a packet.
+struct Run<'a> {
+    span: u16,
+    /// First tick that the receiver lacks, and the tick after the last one.
+    lacks: Tick,
+    until: Tick,
+    start: Tick,
+    inputs: &'a [u8],
+}
 
 impl Session {
-    /// Usual time between packets: a tick, at most [`INTERVAL_MAX`]; doubled above 16 known peers, tripled above 32.
+    /// Usual time between packets: a tick, at most [`INTERVAL_MAX`]; doubled above 16 peers, tripled above 32.
     pub(super) fn send_interval(&self) -> u64 {
-        let many = match self.peers.list.len() {
+        let many = match self.taking_part() {
             0..=16 => 1,
             17..=32 => 2,
             _ => 3,
         };
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
+    }
+
+    /// Whether a peer has a vote or is served without one.
+    pub(super) fn takes_part(&self, remote: &Remote) -> bool {
+        remote.is_served(self.clock.active) || self.view.voter(remote.id).is_some()
+    }
+
+    pub(super) fn serves(&self, id: PeerId) -> bool {
+        self.peers.find(id).is_some_and(|remote| self.takes_part(remote))
+    }
+
+    /// Number of peers that take part, including this one.
+    fn taking_part(&self) -> usize {
+        1 + self.peers.list.iter().skip(1).filter(|remote| self.takes_part(remote)).count()
     }
 
     /// Updates those fields of this peer's row that the agreement reads.
@@ -101,7 +122,7 @@ impl Session {
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
-        let in_large = self.peers.list.len() > 16;
+        let in_large = self.taking_part() > 16;
         let early = self.outbox.urgent && !in_large;
         if now < self.outbox.next_at && !early {
             return;
@@ -117,7 +138,10 @@ impl Session {
         let mut row = Vec::with_capacity(64);
         own.write(&mut row);
         for place in 1..self.peers.list.len() {
-            self.transmit_to(place, &row);
+            let mut burst = 1;
+            while self.transmit_to(place, &row) && burst < BURST_MAX {
+                burst += 1;
+            }
         }
         while self.outbox.packets.len() > PACKETS_MAX {
             self.outbox.packets.pop_front();
@@ -129,14 +153,14 @@ impl Session {
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());
-        tries
-            || remote.attached
-            || within(remote.heard, SERVED, self.clock.active)
-            || self.view.voter(remote.id).is_some()
+        tries || self.takes_part(remote)
     }
 
-    fn transmit_to(&mut self, place: usize, own: &[u8]) {
-        let Some(to) = self.peers.list.get(place).filter(|remote| self.is_served(remote)) else { return };
+    /// Sends a packet to a peer. Returns whether the peer is behind, and another packet would help.
+    fn transmit_to(&mut self, place: usize, own: &[u8]) -> bool {
+        let Some(to) = self.peers.list.get(place).filter(|remote| self.is_served(remote)) else {
+            return false;
+        };
         let now = self.clock.now;
         let header = Header {
             sender: self.me,
@@ -158,25 +182,27 @@ impl Session {
         if let Some(row) = foreign.first().and_then(|remote| remote.row.as_ref()) {
             row.write(&mut first_row);
         }
-        // Long runs leave room for a row. Other spans come first in turn, because the first run may fill the packet.
+        // Long runs leave room for a row. The first run may fill the packet, so the next packet begins after it.
         let mut runs: Vec<_> = spans.filter_map(|span| self.run_for(to, span)).collect();
-        rotate(&mut runs, self.outbox.version);
+        rotate_to(&mut runs, |run| run.span >= to.next_span);
         let room = RESERVE + ROW_ID_BYTES + first_row.len();
-        let ends = packet.runs(self.log.size(), room, runs.iter().copied());
-        let resumes = next_resumes(&to.resumes, self.log.size(), &runs, &ends);
-        packet.foreign(
-            foreign
-                .iter()
-                .map(|remote| (remote.id, remote.row.as_ref()))
-                .filter_map(|(id, row)| Some((id, row?))),
-        );
+        let parts = runs.iter().map(|run| (run.span, run.start, run.inputs));
+        let ends = packet.runs(self.log.size(), room, parts);
+        let resumes = next_resumes(&to.resumes, &runs, &ends, self.clock.active);
+        let next_span = runs.get(ends.len()).map_or(0, |run| run.span);
+        let heard = within(to.heard, self.config.timing.heard, self.clock.active);
+        let is_behind = heard && is_behind(&runs, &ends);
+        let rows = foreign.iter().filter_map(|remote| Some((remote.id, remote.row.as_ref()?)));
+        let count = packet.foreign(rows);
+        let next_row = foreign.get(count).map(|remote| remote.id);
         let bytes = packet.finish(self.config.match_tag);
         let id = to.id;
         if let Some(to) = self.peers.list.get_mut(place) {
             to.link.sent(bytes.len());
-            to.resumes = resumes;
+            (to.resumes, to.next_span, to.next_row) = (resumes, next_span, next_row);
         }
         self.outbox.packets.push_back((id, bytes));
+        is_behind
     }
 
     /// Whether the row of `receiver` states that it hears `other`. The bits for voters count only if that row is in
@@ -200,60 +226,78 @@ impl Session {
         }
     }
 
-    /// The oldest inputs of a span that the receiver lacks, or those that follow if the last packet had no room for all.
-    /// Inputs of another peer are relayed if the receiver does not hear that peer or lacks many of its inputs.
+    /// The oldest inputs of a span that the receiver lacks, or those that follow if the last packet had no room for
+    /// all, unless the oldest ones have been lost. Inputs of another peer are relayed if the receiver does not hear
+    /// that peer or lacks many of its inputs.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<Run<'_>> {
         let span = self.view.spans.get(index)?;
-        let start = self.lacks(receiver, index);
+        let lacks = self.lacks(receiver, index);
         let until = self.log.next(index).min(span.until);
-        if start >= until || span.owner == receiver.id {
+        if lacks >= until || span.owner == receiver.id {
             return None;
         }
-        let helps = || !self.hears(receiver, span.owner) || start.saturating_add(HELP_TICKS) < until;
+        let helps = || !self.hears(receiver, span.owner) || lacks.saturating_add(HELP_TICKS) < until;
         if span.owner != self.me && (self.config.has(Fault::NoRelay) || !helps()) {
             return None;
         }
         let number = u16::try_from(index).ok()?;
-        let resume = receiver.resumes.iter().find(|(span, _)| *span == number).map(|(_, tick)| *tick);
-        let start = resume.filter(|tick| (start..until).contains(tick)).unwrap_or(start);
+        // A receiver drops inputs after a gap, so a lost run begins the series again.
+        let patience = receiver.link.round_trip + 3 * self.send_interval();
+        let goes_on = |resume: &&Resume| {
+            let is_lost = resume.lacks == lacks && self.clock.active > resume.since.saturating_add(patience);
+            !is_lost && (lacks..until).contains(&resume.tick)
+        };
+        let resume = receiver.resumes.iter().find(|resume| resume.span == number).filter(goes_on);
+        let start = resume.map_or(lacks, |resume| resume.tick);
         let inputs = self.log.range(index, start, until.min(start.saturating_add(RUN_TICKS_MAX)))?;
-        Some((number, start, inputs))
+        Some(Run { span: number, lacks, until, start, inputs })
     }
 
-    /// Rows of voters and of peers that request seats, if the receiver does not hear them. Their order changes with
-    /// each row version.
+    /// Rows of voters and of peers that request seats, if the receiver does not hear them. Those that did not fit in
+    /// the last packet are first.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();
         }
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let others = self.peers.list.iter().skip(1);
         let mut rows: Vec<&Remote> = others
             .filter(|other| {
+                let asks = |row: &Row| row.wants.seats.is_some();
                 let matters = self.view.voter(other.id).is_some()
-                    || other.row.as_ref().is_some_and(|row| row.wants.seats.is_some());
+                    || within(other.fresh, fresh, active) && other.row.as_ref().is_some_and(asks);
                 matters && other.id != receiver.id && other.row.is_some() && !self.hears(receiver, other.id)
             })
             .collect();
-        rotate(&mut rows, self.outbox.version);
+        rotate_to(&mut rows, |other| receiver.next_row == Some(other.id));
         rows
     }
 }
 
-/// For each span whose run did not fit in a packet, the first tick of its run in the next packet. Without this, each
-/// packet would repeat the same inputs until they are acknowledged.
-fn next_resumes(before: &[(u16, Tick)], size: usize, runs: &[Run], ends: &[Tick]) -> Vec<(u16, Tick)> {
-    let waits = |span: u16| runs.iter().skip(ends.len()).any(|(waiting, ..)| *waiting == span);
-    let is_cut = |&((_, start, inputs), end): &(&Run, &Tick)| {
-        usize::try_from(end - start).is_ok_and(|ticks| ticks * size < inputs.len())
-    };
-    let kept = before.iter().copied().filter(|(span, _)| waits(*span));
-    let cut = runs.iter().zip(ends).filter(is_cut).map(|((span, ..), end)| (*span, *end));
-    kept.chain(cut).collect()
+/// The series of runs after a packet, for each span with inputs that did not fit in it. Without them, each packet would
+/// repeat the same inputs until they are acknowledged.
+fn next_resumes(before: &[Resume], runs: &[Run], ends: &[Tick], now: u64) -> Vec<Resume> {
+    let waits = |resume: &&Resume| runs.iter().skip(ends.len()).any(|run| run.span == resume.span);
+    let cut = runs.iter().zip(ends).filter(|(run, end)| **end < run.until).map(|(run, &tick)| {
+        let Run { span, lacks, start, .. } = *run;
+        let is_series = |resume: &&Resume| resume.span == span && resume.lacks == lacks && start != lacks;
+        let since = before.iter().find(is_series).map_or(now, |resume| resume.since);
+        Resume { span, tick, lacks, since }
+    });
+    before.iter().filter(waits).copied().chain(cut).collect()
 }
 
-/// Moves the parts of a packet so that another one is first in each row version.
-fn rotate<T>(parts: &mut [T], version: u32) {
-    if let Some(turn) = usize::try_from(version).unwrap_or(0).checked_rem(parts.len()) {
-        parts.rotate_left(turn);
+/// Whether inputs did not fit in a packet whose receiver lacks many of them.
+fn is_behind(runs: &[Run], ends: &[Tick]) -> bool {
+    runs.iter().enumerate().any(|(index, run)| {
+        let is_cut = ends.get(index).is_none_or(|&end| end < run.until);
+        is_cut && run.lacks.saturating_add(HELP_TICKS) < run.until
+    })
+}
+
+/// Moves the parts of a packet so that a certain one is first, if there is such a part.
+fn rotate_to<T>(parts: &mut [T], is_first: impl Fn(&T) -> bool) {
+    if let Some(place) = parts.iter().position(is_first) {
+        parts.rotate_left(place);
     }
 }

@@ -1,5 +1,6 @@
 //! Matches of a game with physics over a network in memory, in simulated time.
 
+mod another_match;
 mod pushers;
 #[cfg(feature = "sealed")]
 mod sealed;

@@ -24,6 +24,7 @@ impl Sim {
             match event {
                 Event::Desync { .. } if self.peers[index].game.is_broken() => {}
                 Event::Desync { peer, .. } if self.is_broken(peer) => self.peers[index].desyncs += 1,
+                Event::Pause { .. } | Event::TooFarBehind => self.peers[index].events.push(event),
                 Event::Waiting { peer, heard } => self.peers[index].waiting.push((peer, heard)),
                 Event::Desync { peer, tick, .. } => {
                     self.fail(format!("S1 {index} and {peer} differ at tick {tick}"))

@@ -225,3 +225,17 @@ fn an_incarnation_of_somebody_else_is_refused() {
     let refused = JoinEvent::Refused { reason: RefusalReason::Taken, offer: vec![1, 2, 3] };
     assert_eq!(net.nodes[index].events.first(), Some(&refused));
 }
+
+#[test]
+fn seats_and_offers_that_do_not_exist_are_errors() {
+    let host = |offer: usize, seats| {
+        let identity = Identity { offer: vec![1; offer], ..identity(0) };
+        Endpoint::host(config(), identity, seats).err().map(|error| error.to_string())
+    };
+    assert_eq!(host(512, 0b1111), None);
+    let error = |what| Some(format!("the session cannot start: {what}"));
+    assert_eq!(host(513, 1), error("`bytes of the offer` is 0 to 512, not 513"));
+    assert_eq!(host(1, 0b1_0000), error("`bits of the own seats` is 0 to 15, not 16"));
+    let identity = Identity { offer: vec![1; 513], ..identity(0) };
+    assert!(Endpoint::join(config(), identity, Role::Spectator, address(1)).is_err());
+}

@@ -6,6 +6,7 @@
     reason = "the numbers of a test are small"
 )]
 
+mod departures;
 #[cfg(feature = "__faults")]
 mod faults;
 mod game;

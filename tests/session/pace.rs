@@ -162,6 +162,15 @@ fn a_match_keeps_its_pace_when_the_latency_falls() {
     assert!((297..320).contains(&played), "{played} ticks in 5 s");
 }
 
+/// In matches of more than 32 peers, inputs wait for a packet in every third tick.
+#[test]
+fn a_large_match_plays_at_full_speed() {
+    let mut sim = players(34, link(40 * MS), |config| config.tick_micros = 50_000);
+    sim.look = 5 * MS;
+    let pace = pace(&mut sim, 5);
+    assert!(pace >= 1960, "{pace} hundredths of a tick per second");
+}
+
 /// The inputs of a round trip do not fit in one packet.
 #[test]
 fn large_inputs_play_at_full_speed() {
@@ -174,5 +183,25 @@ fn large_inputs_play_at_full_speed() {
             let case = format!("{input_bytes} bytes, {count} players, {latency} ms, {loss} % loss");
             assert!(pace >= 5500, "{case}: {pace} hundredths of a tick per second");
         }
+    }
+}
+
+/// A spectator that begins 5 s late hears only one peer, through which it receives the inputs of all players.
+#[test]
+fn a_late_spectator_keeps_up_with_many_bytes() {
+    for (count, input_bytes) in [(2, 512), (4, 300), (32, 8)] {
+        let link = LinkConditions { loss: 2, ..link(40 * MS) };
+        let mut sim = players(count, link, |config| config.input_bytes = input_bytes);
+        sim.look = 4 * MS;
+        sim.links = vec![vec![link; count + 1]; count + 1];
+        let first = sim.peers[0].session.view().clone();
+        let config = Config { input_bytes, ..Config::new(5, count as u8) };
+        sim.add(config, Role::Spectator, &first, 1000);
+        sim.introduce(count, 0);
+        sim.start(count, 5 * S);
+        sim.run(12 * S);
+        assert_eq!(sim.failure, None);
+        let lag = sim.peers[0].session.final_tick() - sim.peers[count].session.played();
+        assert!(lag < 40, "{input_bytes} bytes, {count} players: {lag} ticks");
     }
 }

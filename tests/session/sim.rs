@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use lockstep2d::session::{Config, Key, PeerId, Role, Session, Tick, View};
+use lockstep2d::session::{Config, Event, Key, PeerId, Role, Session, Tick, View};
 
 use super::game::{Game, START, mix};
 
@@ -68,6 +68,8 @@ pub(crate) struct Peer {
     /// through others.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
+    /// Pauses and lags that the session reported.
+    pub(crate) events: Vec<Event>,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
     pub(crate) was_leaving: bool,
@@ -167,6 +169,7 @@ impl Sim {
             in_menu: false,
             waiting: Vec::new(),
             desyncs: 0,
+            events: Vec::new(),
             bytes: 0,
             finished: None,
             was_leaving: false,

@@ -1,6 +1,6 @@
 //! Single scenarios.
 
-use lockstep2d::session::{Config, Role, Status};
+use lockstep2d::session::{Config, Event, Role, Status, View};
 
 use super::pace::{link, pace, players};
 use super::sim::{MS, S, Sim, id, key};
@@ -185,7 +185,7 @@ fn the_first_tick_waits_for_enough_players() {
     sim.links = vec![vec![link(40 * MS); 3]; 3];
     let mut config = Config::new(5, 4);
     configure(&mut config);
-    let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
+    let first = View::opened_by(id(0), key(0), 1, false);
     for index in 0..3 {
         sim.add(config.clone(), Role::Player { seats: 1 }, &first, 1000);
         (0..index).for_each(|other| sim.introduce(index, other));
@@ -200,6 +200,27 @@ fn the_first_tick_waits_for_enough_players() {
     assert_eq!(sim.failure, None);
 }
 
+/// The guests would be content with two players. The host waits for four, and crashes.
+#[test]
+fn the_number_of_the_host_counts() {
+    let mut sim = Sim::new(3, 3);
+    sim.look = MS;
+    sim.links = vec![vec![link(40 * MS); 3]; 3];
+    let first = View::opened_by(id(0), key(0), 1, false);
+    for index in 0..3 {
+        let config = Config { start_with: if index == 0 { 4 } else { 2 }, ..Config::new(5, 4) };
+        sim.add(config, Role::Player { seats: 1 }, &first, 1000);
+        (0..index).for_each(|other| sim.introduce(index, other));
+        sim.start(index, index as u64 * 2 * S);
+    }
+    sim.run(8 * S);
+    assert!((0..3).all(|index| (status(&sim, index), played(&sim, index)) == (Status::Waiting, 0)));
+    sim.peers[0].on = false;
+    sim.run(14 * S);
+    assert!((1..3).all(|index| status(&sim, index) == Status::Playing && played(&sim, index) > 60));
+    assert_eq!(sim.failure, None);
+}
+
 /// An end that is requested at once neither starts the match nor shuts out players.
 #[test]
 fn a_match_whose_end_is_known_waits_for_its_players() {
@@ -207,7 +228,7 @@ fn a_match_whose_end_is_known_waits_for_its_players() {
     sim.look = MS;
     sim.links = vec![vec![link(40 * MS); 2]; 2];
     let config = Config { start_with: 2, ..Config::new(5, 2) };
-    let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
+    let first = View::opened_by(id(0), key(0), 1, false);
     for index in 0..2 {
         sim.add(config.clone(), Role::Player { seats: 1 }, &first, 1000);
         (0..index).for_each(|other| sim.introduce(index, other));
@@ -258,4 +279,66 @@ fn sixty_four_peers_play() {
     assert_eq!(sim.failure, None);
     let ticks = sim.peers.iter().map(|peer| peer.session.confirmed()).min().expect("valid") - before;
     assert!(ticks >= 80, "{ticks} of 90 ticks");
+}
+
+#[test]
+fn a_peer_that_was_away_for_too_long_knows_it() {
+    let mut sim = players(3, link(30 * MS), |config| config.log_ticks = 128);
+    pace(&mut sim, 1);
+    (0..2).for_each(|other| cut(&mut sim, other, 2, 20 * S));
+    sim.run(19 * S);
+    assert_eq!(sim.peers[2].events, []);
+    sim.run(26 * S);
+    assert_eq!(sim.peers[2].events, [Event::TooFarBehind]);
+    assert!(sim.peers[0].events.is_empty() && sim.failure.is_none());
+}
+
+/// The others have forgotten the inputs of the ticks that the spectator has not played.
+#[test]
+fn a_spectator_that_pauses_keeps_the_inputs() {
+    let mut sim = players(2, link(30 * MS), |config| config.log_ticks = 128);
+    sim.links = vec![vec![link(30 * MS); 3]; 3];
+    let first = sim.peers[0].session.view().clone();
+    let config = Config { log_ticks: 128, ..Config::new(5, 2) };
+    sim.add(config, Role::Spectator, &first, 1000);
+    sim.introduce(2, 0);
+    sim.start(2, 0);
+    sim.run(5 * S);
+    sim.peers[2].in_menu = true;
+    sim.run(30 * S);
+    sim.peers[2].in_menu = false;
+    sim.run(36 * S);
+    assert_eq!(sim.failure, None);
+    assert!(played(&sim, 2) + 60 > played(&sim, 0), "{} of {}", played(&sim, 2), played(&sim, 0));
+}
+
+#[test]
+fn the_pause_of_a_player_ends_when_it_leaves() {
+    let mut sim = players(3, link(30 * MS), |_| ());
+    sim.peers[2].session.pause(true);
+    pace(&mut sim, 1);
+    sim.peers[2].leaves = true;
+    sim.peers[2].session.leave();
+    sim.run(10 * S);
+    let peer = id(2);
+    assert_eq!(sim.peers[0].events, [true, false].map(|paused| Event::Pause { peer, paused }));
+}
+
+/// A server without a seat and 63 players are all the voters that a match may have.
+#[test]
+fn a_match_with_64_voters_admits_no_other() {
+    let mut sim = Sim::new(1, 65);
+    sim.look = 20 * MS;
+    let mut first = View::opened_by(id(0), key(0), 0, true);
+    (1..64).for_each(|index| first.found(id(index), key(index), 1, 1 << index));
+    let config = Config { tick_micros: 200_000, ..Config::new(5, 64) };
+    for index in 0..65 {
+        let role = if index == 0 { Role::Spectator } else { Role::Player { seats: 1 } };
+        sim.add(config.clone(), role, &first, 1000);
+        sim.start(index, 0);
+    }
+    (0..64).for_each(|index| sim.introduce(64, index));
+    sim.run(6 * S);
+    assert_eq!((sim.newest_view().number, status(&sim, 64)), (0, Status::Joining));
+    assert_eq!(sim.failure, None);
 }

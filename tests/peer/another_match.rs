@@ -1,0 +1,25 @@
+//! A peer that leaves a match for another one.
+
+use lockstep2d::peer::{Network, PeerOptions};
+use lockstep2d::session::Status;
+
+use super::Table;
+
+/// The other match begins with tick 0, but the replay has ticks of the first match.
+#[test]
+fn a_peer_that_changes_the_match_has_no_replay() {
+    let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
+    let mut table = Table::new(10, 0);
+    table.host(options);
+    table.join(options, 0);
+    table.play(2000);
+    table.host(PeerOptions { start_with: 2, ..options });
+    assert!(table.peer(1).confirmed() > 60);
+    table.peer(1).ask(Network::address(2));
+    table.play(500);
+    let taken = table.replays[1].len();
+    table.play(2500);
+    assert_eq!((table.peer(1).status(), table.replays[1].len()), (Some(Status::Playing), taken));
+    let end = table.peers[1].take().expect("valid").finish().expect("valid");
+    assert!(end.ticks > 60 && end.replay.is_empty());
+}
