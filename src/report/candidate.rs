@@ -15,6 +15,7 @@ use super::comparison::{Comparison, Explanation, Subject};
 use super::evidence::Said;
 use super::phases::TickPhases;
 use super::stage::Stage;
+use crate::body::{BodyId, Handle};
 use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::BodyField;
@@ -92,19 +93,17 @@ pub(super) fn explain<G: Game>(
         // The difference already shows the flipped bit.
         return Ok(());
     }
-    let mut candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
-    if candidates.is_empty() {
-        // The step may have restored the body, so that only its contacts differ.
-        candidates = everybody(&mut game, &wrong.before);
-    }
+    let candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
     let Some(culprit) = search(wrong, &mut game, candidates, work) else {
         return Ok(());
     };
-    let Candidate { path, field, bit, when, .. } = culprit;
+    let Candidate { body, field, bit, when } = culprit;
     if is_known {
-        found.subjects.sort_by_key(|subject| subject.path != path);
-        let first = &mut found.subjects[0].differences;
-        first.sort_by_key(|difference| difference.field().name() != field.name());
+        found.subjects.sort_by_key(|subject| handle(&subject.path) != Some(body));
+        // The states of a report may be equal although their hashes differ.
+        if let Some(first) = found.subjects.first_mut() {
+            first.differences.sort_by_key(|difference| difference.field().name() != field.name());
+        }
     }
     // The state before and after the flip.
     game.load(&wrong.before);
@@ -112,7 +111,8 @@ pub(super) fn explain<G: Game>(
         game.step(&wrong.inputs);
     }
     let was = fields(&game.save())?;
-    flip(&mut game, &path, field, bit);
+    let path = game.world_mut().map_or_else(String::new, |world| format!("body {}", world.body_label(body)));
+    flip(&mut game, body, field, bit);
     let differences = differences(&was, &fields(&game.save())?);
     let (tick, stage) = match when {
         When::Before => (wrong.tick, Stage::BeforeStep),
@@ -131,34 +131,40 @@ enum When {
 }
 
 struct Candidate {
-    path: String,
+    body: BodyId,
     field: BodyField,
     bit: u32,
     when: When,
-    /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256.
-    distance: u32,
+}
+
+impl Candidate {
+    fn all_of(body: BodyId, when: When) -> impl Iterator<Item = Self> {
+        let of_field =
+            move |field: BodyField| (0..field.bits()).map(move |bit| Candidate { body, field, bit, when });
+        BodyField::ALL.into_iter().flat_map(of_field)
+    }
 }
 
 /// Bits of the speeds and poses of the bodies that differ, closest to the difference first: without a strong collision,
 /// most of the difference stays in the number with the flipped bit.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {
-        for field in BodyField::ALL {
+    for subject in subjects {
+        let Some(body) = handle(&subject.path) else { continue };
+        let size = |field: BodyField| {
             let of_field = |difference: &&Difference| difference.field().name() == field.name();
             let difference = subject.differences.iter().find(of_field).and_then(both_bits);
-            let size = log2(difference.map_or(0, |(a, b)| a.abs_diff(b)));
-            candidates.extend((0..field.bits()).map(|bit| Candidate {
-                path: subject.path.clone(),
-                field,
-                bit,
-                when: When::Before,
-                distance: size.map_or(u32::MAX, |size| size.abs_diff(bit << 8)),
-            }));
-        }
+            log2(difference.map_or(0, |(a, b)| a.abs_diff(b)))
+        };
+        let sizes = BodyField::ALL.map(|field| (field, size(field)));
+        candidates.extend(Candidate::all_of(body, When::Before).map(|candidate| {
+            let size = sizes.iter().find(|(field, _)| *field == candidate.field).and_then(|(_, size)| *size);
+            // Distance of the bit's value from the observed difference, as a base-2 logarithm times 256.
+            (size.map_or(u32::MAX, |size| size.abs_diff(candidate.bit << 8)), candidate)
+        }));
     }
-    candidates.sort_by_key(|candidate| candidate.distance);
-    candidates
+    candidates.sort_by_key(|(distance, _)| *distance);
+    candidates.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
 /// Approximate base-2 logarithm of a number times 256; `None` for 0.
@@ -169,26 +175,18 @@ fn log2(number: u128) -> Option<u32> {
     Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
 }
 
-/// The bits of the speeds and poses of all bodies, after and before the tick.
-fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
-    game.load(before);
+/// The bodies whose bits [`World::flip_bit`](crate::world::World::flip_bit) can flip.
+fn loose_bodies<G: Game>(game: &mut G) -> Vec<BodyId> {
     let Some(world) = game.world_mut() else {
         return Vec::new();
     };
-    let paths: Vec<String> = world.bodies().map(|(id, _)| format!("body {}", world.body_label(id))).collect();
-    let mut candidates = Vec::new();
-    for when in [When::After, When::Before] {
-        for path in &paths {
-            for field in BodyField::ALL {
-                let of_bit = |bit| Candidate { path: path.clone(), field, bit, when, distance: 0 };
-                candidates.extend((0..field.bits()).map(of_bit));
-            }
-        }
-    }
-    candidates
+    let bodies = world.bodies();
+    let loose = bodies.filter(|(_, body)| body.is_dynamic() && body.is_enabled() && !body.is_asleep());
+    loose.map(|(id, _)| id).collect()
 }
 
-/// Returns the first candidate that leads to the wrong state, within `work` units.
+/// Returns the first candidate that leads to the wrong state, within `work` units. Without candidates, tries the bits
+/// of all bodies, after and before the tick: the step may have restored the body, so that only its contacts differ.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,
@@ -196,44 +194,60 @@ fn search<G: Game>(
     work: u64,
 ) -> Option<Candidate> {
     game.load(&wrong.before);
+    let everybody = candidates.is_empty();
+    let before = if everybody { loose_bodies(game) } else { Vec::new() };
     let step_work = game.work(&wrong.inputs).max(TRY_WORK);
     game.step(&wrong.inputs);
+    let after = if everybody { loose_bodies(game) } else { Vec::new() };
     let right = game.save();
+    let of_bodies = [(When::After, after), (When::Before, before)]
+        .into_iter()
+        .flat_map(|(when, bodies)| bodies.into_iter().flat_map(move |body| Candidate::all_of(body, when)));
+    let loading = step_work / 2;
     let mut left = work;
-    candidates.into_iter().find(|candidate| {
-        let loading = step_work / 2;
-        let price = if candidate.when == When::Before { step_work + loading } else { loading };
-        // A cheaper candidate may still fit into the budget.
-        let Some(rest) = left.checked_sub(price) else {
-            return false;
-        };
-        let Candidate { path, field, bit, when, .. } = candidate;
-        game.load(if *when == When::Before { &wrong.before } else { &right });
-        if flip(game, path, *field, *bit).is_none() {
-            return false;
+    // The state that the game has, if no bit of it is flipped.
+    let mut loaded = None;
+    for candidate in candidates.into_iter().chain(of_bodies) {
+        let Candidate { body, field, bit, when } = candidate;
+        let simulating = if when == When::Before { step_work } else { 0 };
+        if left < loading {
+            break;
         }
-        left = rest;
-        if *when == When::Before {
+        // A cheaper candidate may still fit into the budget.
+        if left < loading + simulating {
+            continue;
+        }
+        if loaded != Some(when) {
+            left -= loading;
+            game.load(if when == When::Before { &wrong.before } else { &right });
+            loaded = Some(when);
+        }
+        if flip(game, body, field, bit).is_none() {
+            left = left.saturating_sub(1);
+            continue;
+        }
+        loaded = None;
+        if when == When::Before {
+            left -= simulating;
             game.step(&wrong.inputs);
         }
-        wrong.wrong.is(game.state_hash())
-    })
+        if wrong.wrong.is(game.state_hash()) {
+            return Some(candidate);
+        }
+    }
+    None
 }
 
-/// Slot and generation of a body, from its path.
-fn handle(path: &str) -> Option<(u32, u32)> {
+/// The body of a path.
+fn handle(path: &str) -> Option<BodyId> {
     let (_, label) = path.rsplit_once("body ")?;
     // A name may follow.
     let handle = label.split(' ').next()?;
     let (slot, generation) = handle.split_once('v')?;
-    Some((slot.parse().ok()?, generation.parse().ok()?))
+    Some(BodyId::from_parts(slot.parse().ok()?, generation.parse().ok()?))
 }
 
-/// Flips a bit of a body's speed or pose; `None` if there is no such body, or `World::flip_bit` refuses the bit.
-fn flip<G: Game>(game: &mut G, path: &str, field: BodyField, bit: u32) -> Option<()> {
-    let handle = handle(path)?;
-    let world = game.world_mut()?;
-    let body = world.bodies().map(|(id, _)| id);
-    let body = { body }.find(|id| (id.index(), id.generation()) == handle)?;
-    world.flip_bit(body, field, bit).ok()
+/// Flips a bit of a body's speed or pose; `None` if `World::flip_bit` refuses it, which changes nothing.
+fn flip<G: Game>(game: &mut G, body: BodyId, field: BodyField, bit: u32) -> Option<()> {
+    game.world_mut()?.flip_bit(body, field, bit).ok()
 }

@@ -62,6 +62,21 @@ impl TickPhases {
         TickPhases { digests, start: patches(&before, &start), start_length: start.len() as u64 }
     }
 
+    /// Length of the patches in a report, in bytes.
+    pub(super) fn start_bytes(&self) -> usize {
+        self.start.iter().map(|patch| 16 + patch.bytes.len()).sum()
+    }
+
+    /// Length in a report with its tick, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        32 + 16 * self.digests.len() + self.start_bytes()
+    }
+
+    /// Keeps only the digests, which still show the stage.
+    pub(super) fn forget_start(&mut self) {
+        (self.start, self.start_length) = (Vec::new(), 0);
+    }
+
     /// Restores the world at the start of the step from the world after the previous tick, if the bytes are valid.
     pub(super) fn start(&self, before: &World) -> Option<World> {
         let mut bytes = before.to_bytes();

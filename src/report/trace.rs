@@ -2,7 +2,7 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::desync::{Desync, DesyncReport};
+use super::desync::{Desync, DesyncReport, SAVES_BYTES_MAX};
 use super::phases::TickPhases;
 use crate::lockstep::{Game, History};
 use crate::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, RecordError, Recorder, Step, Verdict};
@@ -44,7 +44,7 @@ impl<G: Game> Trace<G> {
     /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
     pub fn start(setup: &G::Setup, ticks: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, CHECKPOINT_INTERVAL)?;
-        let mut memory = Memory::new(ticks);
+        let mut memory = Memory::new(ticks, Limits::default().file_bytes);
         memory.push(0, &game, TickPhases::default());
         Ok(Trace { game, recorder, replay: Vec::new(), memory })
     }
@@ -76,7 +76,8 @@ impl<G: Game> Trace<G> {
         Ok(())
     }
 
-    /// Creates the report of the last ticks, with a replay from the start.
+    /// Creates the report of the last ticks, with a replay from the start. It leaves out saves and starts of steps, the
+    /// oldest first, to fit into the default of [`Limits::file_bytes`] if replay and hashes do.
     #[must_use]
     pub fn report(&self) -> DesyncReport {
         let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
@@ -84,10 +85,12 @@ impl<G: Game> Trace<G> {
     }
 
     /// Simulates the inputs of a replay up to tick `until`, and reports the last `ticks` ticks. Checkpoints are
-    /// ignored.
+    /// ignored. The report leaves out saves and starts of steps, the oldest first, to fit into
+    /// [`Limits::file_bytes`].
     ///
     /// # Errors
-    /// [`TraceError`] if the file is malformed or unverifiable, exceeds a limit, or cannot be recorded again.
+    /// [`TraceError`] if the file is malformed or unverifiable, exceeds a limit, or cannot be recorded again, or if the
+    /// report does not fit.
     pub fn of_replay(
         file: &[u8],
         limits: &Limits,
@@ -96,7 +99,7 @@ impl<G: Game> Trace<G> {
     ) -> Result<DesyncReport, TraceError> {
         let mut raw = RawReplay::<G>::open(file, limits)?;
         let (mut recorder, _) = Recorder::<G>::start(&raw.setup()?, CHECKPOINT_INTERVAL)?;
-        let mut memory = Memory::new(ticks);
+        let mut memory = Memory::new(ticks, limits.file_bytes);
         let from = until.min(raw.ticks()).saturating_sub(ticks.into());
         if from == 0 {
             memory.push(0, raw.game(), TickPhases::default());
@@ -118,6 +121,10 @@ impl<G: Game> Trace<G> {
             }
         }
         let replay = recorder.so_far(raw.game().state_hash());
+        let (bytes, max) = (memory.bytes_without_saves(raw.game().players(), &replay), limits.file_bytes);
+        if bytes > max {
+            return Err(TraceError::TooLong { bytes, max });
+        }
         Ok(memory.report(raw.game(), raw.tick(), replay))
     }
 }
@@ -125,28 +132,59 @@ impl<G: Game> Trace<G> {
 struct Memory<G: Game> {
     history: History<G>,
     phases: VecDeque<(u64, TickPhases)>,
+    /// Number of entries at the front of `phases` without the start of the step.
+    bare: usize,
+    /// Length of all starts in bytes. A quarter of `bytes_max` is allowed.
+    starts: usize,
+    /// Maximum length of the report.
+    bytes_max: u64,
 }
 
 impl<G: Game> Memory<G> {
-    fn new(ticks: u32) -> Self {
-        Memory { history: History::of_ticks(ticks.saturating_add(1)), phases: VecDeque::new() }
+    fn new(ticks: u32, bytes_max: u64) -> Self {
+        let history = History::of_ticks(ticks.saturating_add(1));
+        Memory { history, phases: VecDeque::new(), bare: 0, starts: 0, bytes_max }
     }
 
     fn push(&mut self, tick: u64, game: &G, phases: TickPhases) {
         self.history.push(tick, game.save(), game.state_hash());
         if !phases.digests.is_empty() {
+            self.starts += phases.start_bytes();
             self.phases.push_back((tick, phases));
         }
         let oldest = self.history.oldest().unwrap_or(0);
-        while self.phases.front().is_some_and(|(tick, _)| *tick < oldest) {
-            self.phases.pop_front();
+        while self.phases.front().is_some_and(|(tick, _)| *tick < oldest)
+            && let Some((_, gone)) = self.phases.pop_front()
+        {
+            self.starts -= gone.start_bytes();
+            self.bare = self.bare.saturating_sub(1);
+        }
+        while self.starts as u64 > self.bytes_max / 4
+            && let Some((_, old)) = self.phases.get_mut(self.bare)
+        {
+            self.starts -= old.start_bytes();
+            old.forget_start();
+            self.bare += 1;
         }
     }
 
+    /// Upper bound of the length of a report without saves, in bytes.
+    fn bytes_without_saves(&self, players: u32, replay: &[u8]) -> u64 {
+        // Envelope, name of the rules and other fields of fixed length.
+        const FIXED: usize = 1024;
+        // For each tick: its number, hash, and the number and length of its save.
+        let history = 40 * self.history.iter().count();
+        let phases: usize = self.phases.iter().map(|(_, phases)| phases.bytes()).sum();
+        (FIXED + replay.len() + history + phases) as u64 + 17 * u64::from(players)
+    }
+
     fn report(&self, game: &G, tick: u64, replay: Vec<u8>) -> DesyncReport {
-        let found =
-            Desync { players: game.players(), tick, known: u64::MAX, seats: Vec::new(), hashes: Vec::new() };
-        DesyncReport::new(&found, &self.history, replay).with_phases(self.phases.iter().cloned().collect())
+        let players = game.players();
+        let found = Desync { players, tick, known: u64::MAX, seats: Vec::new(), hashes: Vec::new() };
+        let room = self.bytes_max.saturating_sub(self.bytes_without_saves(players, &replay));
+        let saves = usize::try_from(room).unwrap_or(usize::MAX).min(SAVES_BYTES_MAX);
+        let report = DesyncReport::within(saves, &found, &self.history, replay);
+        report.with_phases(self.phases.iter().cloned().collect())
     }
 }
 
@@ -164,6 +202,13 @@ pub enum TraceError {
     Replay(Verdict),
     /// The replay cannot be recorded again.
     Record(RecordError),
+    /// The report would exceed [`Limits::file_bytes`], even without saves.
+    TooLong {
+        /// Upper bound of its length in bytes.
+        bytes: u64,
+        /// Maximum number of bytes.
+        max: u64,
+    },
 }
 
 impl fmt::Display for TraceError {
@@ -171,6 +216,9 @@ impl fmt::Display for TraceError {
         match self {
             TraceError::Replay(verdict) => verdict.fmt(f),
             TraceError::Record(error) => error.fmt(f),
+            TraceError::TooLong { bytes, max } => {
+                write!(f, "a report of {bytes} bytes, at most {max} are allowed: trace fewer ticks")
+            }
         }
     }
 }

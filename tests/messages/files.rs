@@ -105,6 +105,10 @@ fn comparisons() {
     says([
         (TraceError::Replay(verdict), "malformed: at byte 0: this is not a replay file"),
         (TraceError::Record(RecordError::TickRate), "a tick rate of zero"),
+        (
+            TraceError::TooLong { bytes: 200, max: 100 },
+            "a report of 200 bytes, at most 100 are allowed: trace fewer ticks",
+        ),
     ]);
 }
 

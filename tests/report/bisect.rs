@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
+use lockstep2d::lockstep::{Game, History, RulesId, Sandbox, SandboxSetup, SetupError};
 use lockstep2d::math::Rng;
-use lockstep2d::replay::{Limits, Recording, verify};
-use lockstep2d::report::{Comparison, Evidence, Stage, Trace, bisect};
+use lockstep2d::replay::{Limits, Recorder, Recording, verify};
+use lockstep2d::report::{Comparison, Desync, DesyncReport, Evidence, Stage, Trace, bisect};
 use lockstep2d::world::{BodyField, Command, World};
 
 use crate::sweep;
@@ -20,9 +20,12 @@ use crate::yard::{BODIES, Flip, PLAYERS, When, Yard, YardSave, inputs_at};
 thread_local! {
     static FLIP: Cell<Option<Flip>> = const { Cell::new(None) };
     static STEPS: Cell<u64> = const { Cell::new(0) };
+    static LOADS: Cell<u64> = const { Cell::new(0) };
+    /// Whether games start with all bodies disabled.
+    static FROZEN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// A yard that counts its steps.
+/// A yard that counts its steps and loads.
 struct Faulty<const FAULTY: bool>(Yard);
 
 impl<const FAULTY: bool> Faulty<FAULTY> {
@@ -42,7 +45,12 @@ impl<const FAULTY: bool> Game for Faulty<FAULTY> {
     const RULES: RulesId = Yard::RULES;
 
     fn new(seed: &u64) -> Result<Self, SetupError> {
-        Yard::new(seed).map(Faulty)
+        let mut yard = Yard::new(seed)?;
+        let bodies: Vec<_> = yard.world.bodies().map(|(id, _)| id).collect();
+        for body in bodies.into_iter().filter(|_| FROZEN.get()) {
+            yard.world.disable(body).expect("a body of this world");
+        }
+        Ok(Faulty(yard))
     }
 
     fn players(&self) -> u32 {
@@ -69,6 +77,7 @@ impl<const FAULTY: bool> Game for Faulty<FAULTY> {
     }
 
     fn load(&mut self, save: &YardSave) {
+        LOADS.set(LOADS.get() + 1);
         self.0.load(save);
     }
 
@@ -211,6 +220,57 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let told = found.explanation.map(|told| told.path);
         assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }
+}
+
+/// A report of ten ticks whose last hash is not that of its save.
+fn misstated(hash: impl FnOnce(&mut Sound) -> StateHash) -> Evidence {
+    let (mut recorder, mut game) = Recorder::<Sound>::start(&3, 60).unwrap();
+    let mut history = History::<Sound>::of_ticks(20);
+    for tick in 1..=10 {
+        game.step(recorder.record(&inputs(tick)).unwrap());
+        history.push(tick, game.save(), game.state_hash());
+    }
+    let replay = recorder.so_far(game.state_hash());
+    let save = game.save();
+    history.push(10, save, hash(&mut game));
+    let found = Desync { players: PLAYERS, tick: 10, known: 10, seats: Vec::new(), hashes: Vec::new() };
+    evidence(DesyncReport::new(&found, &history, replay).to_bytes())
+}
+
+#[test]
+fn a_hash_that_is_not_of_its_save_may_be_explained() {
+    let mut path = None;
+    let flip = Flip { tick: 10, when: When::After, body: 0, field: BodyField::VelocityX, bit: 0 };
+    let report = misstated(|game| {
+        path = flip.apply(&mut game.0);
+        game.state_hash()
+    });
+    let found = bisect::<Sound>(&report, None, &Limits::default()).unwrap();
+    assert_eq!((found.first_different, found.tick, found.subjects.len()), (Some(10), Some(10), 0));
+    assert_eq!(found.explanation.map(|told| (told.path, told.bit)), path.map(|path| (path, 0)));
+}
+
+/// Bits of bodies that do not move cannot flip, so a stranger's report makes no work with many of them.
+#[test]
+fn bodies_that_do_not_move_are_not_searched() {
+    FROZEN.set(true);
+    let report = misstated(|_| StateHash(7));
+    LOADS.set(0);
+    let found = bisect::<Sound>(&report, None, &Limits::default()).unwrap();
+    FROZEN.set(false);
+    assert_eq!((found.first_different, found.explanation), (Some(10), None));
+    assert!(LOADS.get() < 10, "loaded {} states", LOADS.get());
+}
+
+/// A refused flip changes nothing, so the next one needs no load. The flips that are tried are limited.
+#[test]
+fn the_loads_of_a_search_are_limited() {
+    let report = misstated(|_| StateHash(7));
+    LOADS.set(0);
+    let found = bisect::<Sound>(&report, None, &Limits::default()).unwrap();
+    assert_eq!((found.first_different, found.explanation), (Some(10), None));
+    // A load is charged as half a tick, and the search may take as long as 15 ticks.
+    assert!(LOADS.get() <= 32, "loaded {} states", LOADS.get());
 }
 
 fn sandbox(seed: u64) -> SandboxSetup {

@@ -6,7 +6,9 @@ use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 use lockstep2d::replay::Limits;
-use lockstep2d::report::{Desync, DesyncReport, Evidence, ReportError, ReportFlaw, compare};
+use lockstep2d::report::{
+    Desync, DesyncReport, Evidence, ReportError, ReportFlaw, Trace, TraceError, bisect, compare,
+};
 
 use crate::sweep;
 use crate::yard::{PLAYERS, Peer, Yard};
@@ -42,6 +44,29 @@ fn a_report_comes_back() {
     );
     assert!(report.history().len() >= 120, "expected a history of at least two seconds");
     assert_eq!(report.saves_left_out(), 0);
+}
+
+/// A reader with the limits of a trace accepts it.
+#[test]
+fn a_trace_that_would_be_large_leaves_saves_and_starts_out() {
+    let replay = peer().replay();
+    let trace = |file_bytes: u64| {
+        let limits = Limits { file_bytes, ..Limits::default() };
+        Trace::<Yard>::of_replay(&replay, &limits, u64::MAX, 60).map(|report| (report, limits))
+    };
+    let whole = trace(u64::MAX).unwrap().0.to_bytes().len() as u64;
+    let mut kept = Vec::new();
+    for percent in [100, 60, 30, 10, 5] {
+        let (report, limits) = trace(whole * percent / 100).unwrap();
+        let evidence = Evidence::read(report.to_bytes(), &limits).unwrap();
+        assert!(bisect::<Yard>(&evidence, None, &limits).unwrap().is_equal());
+        assert_eq!((report.history().len(), report.phases().len()), (61, 60));
+        kept.push(report.saves().len());
+    }
+    assert!(kept.is_sorted_by(|more, fewer| more > fewer) && kept[0] > 50 && kept[4] < 5, "{kept:?}");
+    let max = replay.len() as u64 + 100;
+    let error = trace(max).map(|_| ()).unwrap_err();
+    assert!(matches!(error, TraceError::TooLong { bytes, max: is } if bytes > is && is == max), "{error}");
 }
 
 /// Saves near the differing checkpoint are kept. Distant saves are left out first.

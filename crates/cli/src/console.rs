@@ -7,7 +7,7 @@ use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 
 use crate::error::CommandError;
-use crate::files::is_misleading;
+use crate::files::{OneLine, is_misleading};
 
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
 pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
@@ -45,8 +45,9 @@ impl Console<'_> {
         self.note(format_args!("{DOUBTFUL}warning:{DOUBTFUL:#} {warning}"));
     }
 
-    pub(crate) fn error(&mut self, error: impl fmt::Display) {
-        self.note(format_args!("{BAD}error:{BAD:#} {error}"));
+    /// Writes an error on one line. It is escaped, because it may contain text of an untrusted file.
+    pub(crate) fn error(&mut self, error: &CommandError) {
+        self.note(format_args!("{BAD}error:{BAD:#} {}", OneLine(&error.to_string())));
     }
 }
 

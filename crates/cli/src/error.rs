@@ -9,7 +9,7 @@ use lockstep2d::replay::{KeyframesError, RecordError, SeekError, Verdict};
 use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
-use crate::files::{EXTENSION, OneLine, Shown};
+use crate::files::{EXTENSION, Shown};
 use crate::panics::{Panic, PanicText};
 use crate::signature::{LineError, RandomError};
 
@@ -193,7 +193,7 @@ impl fmt::Display for CommandError {
             }
             CommandError::Record(error) => write!(f, "cannot record: {error}"),
             CommandError::Panicked { path, panic, ticks } => {
-                write!(f, "{}: {}", Shown(path), OneLine(&PanicText { panic, ticks: *ticks }.to_string()))
+                write!(f, "{}: {}", Shown(path), PanicText { panic, ticks: *ticks })
             }
             CommandError::Reversed { from, to } => write!(f, "--from {from} is after --to {to}"),
             CommandError::NoSuchTick { path, tick, ticks } => {

@@ -15,7 +15,8 @@ pub(crate) struct Copy<G: Game> {
 }
 
 pub(crate) enum CopyError {
-    /// The replay cannot be played as far as requested. Its first `ticks` ticks, if any, can be copied.
+    /// The replay cannot be played as far as requested. The checkpoint after its first `ticks` ticks is the last that
+    /// agrees.
     Replay { ticks: u64, verdict: Verdict },
     /// The setup or the inputs of the replay cannot be recorded.
     Record(RecordError),
@@ -32,21 +33,17 @@ impl<G: Game> Copy<G> {
         let setup = codec::decode(header.setup).map_err(|_| CopyError::Record(RecordError::Setup))?;
         let (mut recorder, _) =
             Recorder::<G>::start(&setup, header.checkpoint_interval).map_err(CopyError::Record)?;
+        let mut agreed = 0;
         while recorder.ticks() < ticks {
             match replay.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
-                Err(verdict) => {
-                    let ticks = match verdict {
-                        Verdict::Diverged { last_equal, .. } => last_equal.unwrap_or(0),
-                        _ => recorder.ticks(),
-                    };
-                    return Err(CopyError::Replay { ticks, verdict });
-                }
+                Err(verdict) => return Err(CopyError::Replay { ticks: agreed, verdict }),
             }
             recorder.record(replay.inputs()).map_err(CopyError::Record)?;
             if recorder.is_checkpoint_due() {
                 recorder.checkpoint(replay.game().state_hash());
+                agreed = recorder.ticks();
             }
         }
         Ok(Copy { game: replay.into_game(), recorder })

@@ -23,6 +23,9 @@ const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 /// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
+/// Time for which the server keeps the place of a reader of results that asks for none, such as one with a pager.
+const RESULTS_KEPT: Duration = Duration::from_secs(10 * 60);
+
 /// Pauses between attempts. Together they last about a minute, in which a server can restart.
 const PAUSES: [Duration; 8] = [
     Duration::from_millis(100),
@@ -153,7 +156,8 @@ impl Queue {
 
     /// All results from the first on.
     pub(crate) async fn results(&self) -> Result<PullConsumer, WorkerError> {
-        let config = pull::Config { ack_policy: AckPolicy::None, ..Default::default() };
+        let inactive_threshold = RESULTS_KEPT;
+        let config = pull::Config { ack_policy: AckPolicy::None, inactive_threshold, ..Default::default() };
         retry("read the results", || self.results.create_consumer(config.clone())).await
     }
 

@@ -27,6 +27,7 @@ pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -
     while left > 0 || (follow && shutdown.is_running()) {
         let batch = consumer.fetch().max_messages(BATCH).expires(EXPIRES).messages();
         let mut batch = batch.await.map_err(WorkerError::nats("read the results"))?;
+        let before = left;
         while let Some(result) = batch.next().await {
             let message = result
                 .map_err(|error| WorkerError::Nats { what: "read the results", why: error.to_string() })?;
@@ -38,6 +39,11 @@ pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -
             }
         }
         out.flush().map_err(WorkerError::Output)?;
+        if left == before && !follow {
+            // Results may have expired since they were counted. If the server is gone, this is an error.
+            let info = consumer.info().await.map_err(WorkerError::nats("read the results"))?;
+            left = left.min(info.num_pending);
+        }
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use async_nats::jetstream::consumer::PullConsumer;
 use async_nats::jetstream::object_store::ObjectStore;
@@ -28,8 +28,12 @@ use crate::shutdown::{Phase, Shutdown};
 /// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which an unanswered request counts as lost.
-const LOST: Duration = Duration::from_secs(5);
+/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the time of the client,
+/// after which a lost request looks like one without a job.
+const LOST: Duration = Duration::from_secs(4);
+
+/// Time of failing requests after which a worker ends.
+const OUTAGE_MAX: Duration = Duration::from_secs(60);
 
 /// Pause before another attempt to read a file. It is multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
@@ -96,8 +100,12 @@ pub(crate) async fn run<G: Game + 'static>(
         progress: arguments.ack_seconds / 3,
         metrics,
     };
+    let mut outage = Outage::default();
     while shutdown.is_running() {
-        if let Some(message) = next(&jobs).await {
+        let message = next(&jobs).await;
+        let is_over = outage.exceeds(message.is_err(), Instant::now());
+        let message = message.or_else(|error| if is_over { Err(error) } else { Ok(None) })?;
+        if let Some(message) = message {
             work.metrics.is_busy.store(true, Ordering::Relaxed);
             work.take(&message).await?;
             work.metrics.is_busy.store(false, Ordering::Relaxed);
@@ -107,19 +115,36 @@ pub(crate) async fn run<G: Game + 'static>(
 }
 
 /// The next job. `None` if none arrives in time.
-async fn next(jobs: &PullConsumer) -> Option<Message> {
+async fn next(jobs: &PullConsumer) -> Result<Option<Message>, WorkerError> {
+    let failed = |why: String| WorkerError::Nats { what: "take a job", why };
     let request = async {
-        let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await.ok()?;
-        match batch.next().await? {
-            Ok(message) => Some(message),
-            Err(_) => {
-                // Some errors return at once, so a pause limits the rate of requests.
-                tokio::time::sleep(Duration::from_millis(100)).await;
-                None
-            }
-        }
+        let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await?;
+        batch.next().await.transpose()
     };
-    tokio::time::timeout(EXPIRES + LOST, request).await.ok().flatten()
+    let result = match tokio::time::timeout(EXPIRES + LOST, request).await {
+        Ok(answer) => answer.map_err(|error: async_nats::Error| failed(error.to_string())),
+        Err(_) => Err(failed("the server does not answer".into())),
+    };
+    if result.is_err() {
+        // Some errors return at once, so a pause limits the rate of requests.
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    result
+}
+
+/// The time since which all requests have failed, if the last one has.
+#[derive(Default)]
+struct Outage(Option<Instant>);
+
+impl Outage {
+    /// Adds a request. Returns whether requests have failed for [`OUTAGE_MAX`].
+    fn exceeds(&mut self, has_failed: bool, now: Instant) -> bool {
+        if !has_failed {
+            self.0 = None;
+            return false;
+        }
+        now.duration_since(*self.0.get_or_insert(now)) >= OUTAGE_MAX
+    }
 }
 
 impl<G: Game + 'static> Work<G> {
@@ -140,7 +165,7 @@ impl<G: Game + 'static> Work<G> {
             acknowledge(message, AckKind::Ack).await;
             return Ok(());
         }
-        match self.done(message, &job, delivered).await {
+        match self.done(message, &job, digest, delivered).await {
             Done::Again(pause) => acknowledge(message, AckKind::Nak(Some(pause))).await,
             Done::Result(Judged { verdict, line }) => {
                 // The job leaves the queue only after its result has been stored.
@@ -155,11 +180,11 @@ impl<G: Game + 'static> Work<G> {
     }
 
     /// Verifies the file of a job. In the meantime, tells the server that work continues.
-    async fn done(&self, message: &Message, job: &Job, delivered: u64) -> Done {
+    async fn done(&self, message: &Message, job: &Job, digest: [u8; 32], delivered: u64) -> Done {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
         }
-        let verify = self.verify(job, delivered);
+        let verify = self.verify(job, digest, delivered);
         tokio::pin!(verify);
         loop {
             tokio::select! {
@@ -173,14 +198,15 @@ impl<G: Game + 'static> Work<G> {
         }
     }
 
-    async fn verify(&self, job: &Job, delivered: u64) -> Done {
+    async fn verify(&self, job: &Job, digest: [u8; 32], delivered: u64) -> Done {
         let bytes = match self.read(job).await {
             Ok(bytes) => bytes,
             Err(error) if delivered >= self.max_deliver => return Done::Result(unread(job, &error)),
             Err(_) => return Done::Again(READ_AGAIN * u32::try_from(delivered).unwrap_or(u32::MAX)),
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
-        let judged = tokio::task::spawn_blocking(move || judge.judge(&file, &bytes)).await;
+        // Results are matched with files by the digest, and only the beginning of a large file has been read.
+        let judged = tokio::task::spawn_blocking(move || judge.judge_part(&file, &bytes, &digest)).await;
         // If a signal has stopped the verification, the job goes back to the queue without a pause.
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
@@ -232,4 +258,20 @@ fn unread(job: &Job, error: &io::Error) -> Judged {
     }
     let line = Line { file: &job.file, error: error.to_string(), blake3: &job.blake3 };
     Judged { verdict: UNREAD.into(), line: json(&line) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_worker_ends_after_a_minute_of_errors() {
+        let start = Instant::now();
+        let at = |seconds| start + Duration::from_secs(seconds);
+        let mut outage = Outage::default();
+        assert!(!outage.exceeds(true, at(0)) && !outage.exceeds(true, at(59)));
+        assert!(!outage.exceeds(false, at(60)), "a server that has no job is there");
+        assert!(!outage.exceeds(true, at(61)) && !outage.exceeds(true, at(120)));
+        assert!(outage.exceeds(true, at(121)));
+    }
 }

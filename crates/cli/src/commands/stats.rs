@@ -52,8 +52,12 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
-        let hash = replay.game().state_hash();
-        context.console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
+        // After a step that fails, the state is not that of the last good tick.
+        let state = match failed {
+            None => format!(", state {}", replay.game().state_hash()),
+            Some(_) => String::new(),
+        };
+        context.console.line(format_args!("{file}: {ticks} ticks{state}"))?;
         summary.print(&mut context.console)?;
     }
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))

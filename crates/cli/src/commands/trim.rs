@@ -11,7 +11,7 @@ use crate::console::DOUBTFUL;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::Shown;
+use crate::files::{OneLine, Shown};
 use crate::output_file::{OutputFile, Overwrite};
 use crate::rewriting::{Copy, CopyError};
 
@@ -42,13 +42,16 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
-    let (whole, damage) = whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
+    let Whole { part, interval, damage } =
+        whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
+    // Ticks are kept only if the checkpoint of their block agrees.
+    let checked = most.checked_next_multiple_of(interval).unwrap_or(u64::MAX);
     let of_file = |error: CopyError| error.of_file(&arguments.file);
-    let (copy, damage) = match Copy::<G>::new(whole, most, limits) {
-        Err(CopyError::Replay { ticks, verdict }) if ticks > 0 => {
-            (Copy::new(whole, ticks, limits).map_err(of_file)?, Some(verdict))
-        }
+    let again = |ticks| Copy::<G>::new(part, ticks, limits).map_err(of_file);
+    let (copy, damage) = match Copy::<G>::new(part, checked, limits) {
+        Err(CopyError::Replay { ticks, verdict }) if ticks > 0 => (again(ticks.min(most))?, Some(verdict)),
+        Ok(copy) if copy.ticks() > most => (again(most)?, damage),
         copy => (copy.map_err(of_file)?, damage),
     };
     let ticks = copy.ticks();
@@ -67,7 +70,10 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
         context.console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
         if let Some(verdict) = damage {
-            context.console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
+            let verdict = verdict.to_string();
+            context
+                .console
+                .note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {}", OneLine(&verdict)));
         }
     }
     Ok(Exit::Success)
@@ -81,8 +87,16 @@ struct Line {
     left_out: Option<String>,
 }
 
-/// Returns the header and the intact blocks, and the error of the part after them if that part is damaged.
-fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
+struct Whole<'a> {
+    /// The header and the intact blocks.
+    part: &'a [u8],
+    /// Number of ticks in a block.
+    interval: u64,
+    /// Error of the part after the intact blocks, if that part is damaged.
+    damage: Option<Verdict>,
+}
+
+fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Whole<'a>, ReadError> {
     let mut reader = Reader::open(bytes, limits)?;
     let mut end = reader.offset();
     let damage = loop {
@@ -93,5 +107,5 @@ fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<
         }
     };
     let end = usize::try_from(end).unwrap_or(bytes.len());
-    Ok((&bytes[..end], damage))
+    Ok(Whole { part: &bytes[..end], interval: reader.header().checkpoint_interval.into(), damage })
 }

@@ -1,9 +1,13 @@
 //! `verify` with files that exceed a limit, need another program, or make the game panic.
 
+use std::collections::BTreeMap;
+
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup};
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, History, RulesId, Sandbox, SandboxSetup, SetupError};
 use lockstep2d::replay::{Limits, Recording};
+use lockstep2d::report::{Desync, DesyncReport};
 use lockstep2d::world::Command;
 use lockstep2d_cli::{Exit, Tool};
 use serde_json::{Value, json};
@@ -167,6 +171,100 @@ fn a_setup_may_panic_as_well() {
     let outcome = run_bomb(&["verify", "--json", &folder.write("a.replay", &bytes)]);
     let line = line(&outcome.out);
     assert_eq!((line["verdict"].as_str(), line["ticks"].as_u64()), (Some("panicked"), Some(0)));
+}
+
+/// A game whose state has the text of its setup as a key. If it refuses, the text is the reason.
+struct Echo<const REFUSES: bool>(BTreeMap<String, u64>);
+
+impl<const REFUSES: bool> Game for Echo<REFUSES> {
+    type Setup = String;
+    type Input = ();
+    type Save = BTreeMap<String, u64>;
+    const RULES: RulesId = RulesId { name: "echo", version: 1 };
+
+    fn new(text: &String) -> Result<Self, SetupError> {
+        if REFUSES {
+            return Err(SetupError { why: text.clone() });
+        }
+        Ok(Echo(BTreeMap::from([(text.clone(), 0)])))
+    }
+
+    fn players(&self) -> u32 {
+        1
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, _: &[()]) {
+        self.0.values_mut().for_each(|number| *number += 1);
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(&self.0)
+    }
+
+    fn save(&self) -> Self::Save {
+        self.0.clone()
+    }
+
+    fn load(&mut self, save: &Self::Save) {
+        self.0.clone_from(save);
+    }
+
+    fn work(&self, _: &[()]) -> u64 {
+        1
+    }
+}
+
+/// Text that would clear the screen and write a line of its own.
+const FORGERY: &str = "\u{1b}[2J\rA.replay: match\n";
+
+fn assert_escaped(texts: &str, arguments: &[&str]) {
+    assert!(texts.contains("\\u{1b}[2J\\rA.replay: match\\n"), "{arguments:?}: {texts:?}");
+    assert!(!texts.contains(['\u{1b}', '\r']), "{arguments:?}: {texts:?}");
+}
+
+#[test]
+fn an_error_cannot_write_to_the_terminal() {
+    let folder = Folder::new("echo-errors");
+    let bytes = Recording::<Echo<false>>::start(&FORGERY.into(), 10).unwrap().finish().unwrap();
+    let (file, output) = (folder.write("a", &bytes), folder.path("output"));
+    let tool = Tool::<Echo<true>>::new();
+    for arguments in [
+        &["verify", &file][..],
+        &["stats", &file],
+        &["bisect", &file],
+        &["diff", &file, &file],
+        &["stress-saves", &file],
+        &["inspect", &file, "--tick", "0"],
+        &["seek", &file, "--tick", "0"],
+        &["export", &file, "--json"],
+        &["fork", &file, "--tick", "0", "-o", &output],
+        &["trim", &file, "-o", &output],
+        &["trace", &file, "-o", &output],
+    ] {
+        let outcome = run_tool_of(&tool, arguments);
+        assert_escaped(&(outcome.out + &outcome.err), arguments);
+    }
+}
+
+#[test]
+fn a_comparison_cannot_write_to_the_terminal() {
+    let folder = Folder::new("echo-diff");
+    let report = |ticks: usize| {
+        let mut game = Echo::<false>::new(&FORGERY.into()).unwrap();
+        (0..ticks).for_each(|_| game.step(&[()]));
+        let mut history = History::<Echo<false>>::of_ticks(1);
+        history.push(1, game.save(), game.state_hash());
+        let found = Desync { players: 1, tick: 1, known: 1, seats: Vec::new(), hashes: Vec::new() };
+        DesyncReport::new(&found, &history, Vec::new()).to_bytes()
+    };
+    let (a, b) = (folder.write("a", &report(1)), folder.write("b", &report(2)));
+    let outcome = run_tool_of(&Tool::<Echo<false>>::new(), &["diff", &a, &b]);
+    assert_escaped(&outcome.out, &["diff"]);
+    assert!(outcome.out.contains("\n    value: 1 | 2\n"), "{}", outcome.out);
 }
 
 /// Defines a game that is the counter under another rules identifier.

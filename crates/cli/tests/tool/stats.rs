@@ -1,12 +1,12 @@
 //! `stats`: the figures of every tick, and the largest and the mean value of each figure.
 
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::replay::{Limits, Step, VerifiedReplay};
-use lockstep2d_cli::Exit;
+use lockstep2d::replay::{Limits, Recorder, Step, VerifiedReplay};
+use lockstep2d_cli::{Exit, Tool};
 use serde_json::Value;
 
 use crate::counter::{Counter, inputs_at, setup};
-use crate::{Folder, golden, replay, run, run_sandbox};
+use crate::{Folder, golden, replay, run, run_sandbox, run_tool_of};
 
 #[test]
 fn a_game_without_a_world_has_its_work() {
@@ -80,4 +80,33 @@ fn a_replay_that_is_cut_or_wrong_has_them_as_far_as_it_goes() {
         assert_eq!(outcome.exit, exit);
         assert!(outcome.err.contains(message), "{}", outcome.err);
     }
+}
+
+/// A state that exceeds a limit of work within its tick, or differs at a checkpoint, is not that of the last good tick.
+#[test]
+fn a_wrong_state_has_no_hash() {
+    let folder = Folder::new("stats-wrong");
+    let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
+    for tick in 0..35 {
+        game.step(recorder.record(&inputs_at(tick)).unwrap());
+        game.sum += i64::from(tick == 24);
+        recorder.checkpoint(game.state_hash());
+    }
+    let file = folder.write("a.replay", &recorder.finish(&game).unwrap());
+    let outcome = run(&["stats", &file]);
+    assert_eq!(
+        (outcome.out.lines().next(), outcome.exit),
+        (Some(&*format!("{file}: 29 ticks")), Exit::NoMatch)
+    );
+
+    let file = golden("game");
+    let figures = run_sandbox(&["stats", &file, "--json"]).out;
+    let work = |line: &str| serde_json::from_str::<Value>(line).unwrap()["work"].as_u64().unwrap();
+    let works: Vec<u64> = figures.lines().map(work).collect();
+    let tick_work = works.iter().max().unwrap() - 1;
+    let ticks = works.iter().position(|work| *work > tick_work).unwrap();
+    let tool = Tool::<Sandbox>::new().with_limits(Limits { tick_work, ..Limits::default() });
+    let outcome = run_tool_of(&tool, &["stats", &file]);
+    let expected = format!("{file}: {ticks} ticks");
+    assert_eq!((outcome.out.lines().next(), outcome.exit), (Some(&*expected), Exit::NoMatch));
 }

@@ -3,12 +3,12 @@
 use std::fs;
 
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Recorder, verify};
-use lockstep2d_cli::Exit;
+use lockstep2d::replay::{Limits, Recorder, Recording, verify};
+use lockstep2d_cli::{Exit, Tool};
 use serde_json::Value;
 
-use crate::counter::{Counter, inputs_at, setup};
-use crate::{Folder, golden, replay, run, run_sandbox};
+use crate::counter::{Counter, add, inputs_at, setup};
+use crate::{Folder, golden, replay, run, run_sandbox, run_tool};
 
 /// Number of ticks of the trimmed file, and the text of the error stream. `None` if nothing could be kept.
 fn trimmed(folder: &Folder, bytes: &[u8], more: &[&str]) -> Option<(u64, String)> {
@@ -96,12 +96,30 @@ fn where_a_replay_leaves_the_rules_it_ends() {
     assert_eq!(kept, 20);
     assert!(message.contains("diverged: equal at tick 20, different at tick 30"), "{message}");
     assert_eq!(trimmed(&folder, &diverged, &["--ticks", "15"]), Some((15, String::new())));
+    let (kept, message) = trimmed(&folder, &diverged, &["--ticks", "25"]).unwrap();
+    assert_eq!(kept, 20, "the checkpoint after the requested ticks does not agree");
+    assert!(message.contains("diverged"), "{message}");
 
     let file = folder.write("a.replay", &diverged);
     let outcome = run(&["trim", &file, "-o", &folder.path("new"), "--json"]);
     let found: Value = serde_json::from_str(&outcome.out).unwrap();
     assert_eq!(found["ticks"], 20);
     assert!(found["left_out"].as_str().unwrap().starts_with("diverged"), "{found}");
+}
+
+/// Tick 25 exceeds a limit, so the checkpoint of tick 30 is never compared.
+#[test]
+fn ticks_after_the_last_agreeing_checkpoint_are_left_out() {
+    let folder = Folder::new("trim-unchecked");
+    let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
+    for tick in 0..35 {
+        recording.step(&add(if tick == 24 { 100 } else { 1 }, 0)).unwrap();
+    }
+    let (file, new) = (folder.write("a.replay", &recording.finish().unwrap()), folder.path("new"));
+    let tool = Tool::new().with_limits(Limits { tick_work: 50, ..Limits::default() });
+    let outcome = run_tool(&tool, &["trim", &file, "-o", &new]);
+    assert!(outcome.out.contains(": 20 ticks of "), "{}", outcome.out);
+    assert!(outcome.err.contains("limit exceeded: 101 work units in one tick"), "{}", outcome.err);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fs;
 
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::replay::{Limits, Recorder, Recording};
-use lockstep2d_cli::{Exit, Tool};
+use lockstep2d_cli::{Exit, Judge, Tool};
 use serde_json::{Value, json};
 
 use crate::counter::{Counter, Input, Setup, inputs_at, like_its_counter, setup};
@@ -29,6 +29,20 @@ fn a_match_is_a_line_a_summary_and_success() {
     assert!(lines[1].starts_with("1 of 1 files match; 35 ticks in "), "{}", lines[1]);
     assert!(lines[1].ends_with(" ticks per second"), "{}", lines[1]);
     assert_eq!((outcome.exit, outcome.err.as_str()), (Exit::Success, ""));
+}
+
+/// A worker reads only the beginning of a file that is too large, and knows the digest of the file.
+#[test]
+fn a_part_of_a_large_file_has_the_digest_of_the_file() {
+    let bytes = replay(35);
+    let digest = blake3::hash(&bytes);
+    let judge = Judge::<Counter>::new(Limits { file_bytes: 100, ..Limits::default() });
+    let judged = judge.judge_part("a.replay", &bytes[..101], digest.as_bytes()).unwrap();
+    let line: Value = serde_json::from_str(&judged.line).unwrap();
+    assert_eq!((judged.verdict.as_str(), &line["blake3"]), ("limit_exceeded", &json!(digest.to_string())));
+    assert_eq!(line["bytes"], json!(101));
+    let whole = Judge::<Counter>::new(Limits::default());
+    assert_eq!(whole.judge_part("a", &bytes, digest.as_bytes()), whole.judge("a", &bytes));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use lockstep2d::inspect::Difference;
 use lockstep2d::report::{Blame, Comparison, Group, Side, Subject, Trajectory};
 
 use crate::console::{BAD, DOUBTFUL, GOOD};
-use crate::files::Shown;
+use crate::files::{OneLine, Shown};
 
 /// A comparison, printed with the differing fields of at most `subjects` parts of the state.
 pub(super) struct Text<'a> {
@@ -27,7 +27,10 @@ impl fmt::Display for Text<'_> {
         self.inputs(f)?;
         self.began(f)?;
         self.what(f)?;
-        self.found.notes.iter().try_for_each(|note| write!(f, "\n{DOUBTFUL}note:{DOUBTFUL:#} {note}"))
+        self.found
+            .notes
+            .iter()
+            .try_for_each(|note| write!(f, "\n{DOUBTFUL}note:{DOUBTFUL:#} {}", OneLine(note)))
     }
 }
 
@@ -90,7 +93,7 @@ impl Text<'_> {
         let Some(explanation) = &found.explanation else {
             return Ok(());
         };
-        let (tick, bit, path) = (explanation.tick, explanation.bit, &explanation.path);
+        let (tick, bit, path) = (explanation.tick, explanation.bit, OneLine(&explanation.path));
         write!(f, "\nexplained by bit {bit} of a number of {path}, flipped after tick {tick}:")?;
         explanation.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
     }
@@ -145,9 +148,9 @@ impl Text<'_> {
         sections.dedup();
         let count = subjects.len();
         let differ = if count == 1 { "subject differs" } else { "subjects differ" };
-        write!(f, "{count} {differ} in {}", sections.join(", "))?;
+        write!(f, "{count} {differ} in {}", OneLine(&sections.join(", ")))?;
         for Subject { path, differences, .. } in subjects.iter().take(self.subjects) {
-            write!(f, "\n  {path}")?;
+            write!(f, "\n  {}", OneLine(path))?;
             differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
         }
         match count.saturating_sub(self.subjects) {
@@ -172,7 +175,7 @@ impl fmt::Display for Line<'_> {
         };
         // The texts may come from an untrusted file, so they are escaped.
         let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
-        write!(f, "{}", Shown(Path::new(&text)))
+        write!(f, "{}", OneLine(&text))
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn print<G: Game>(
         shown(&format!("{name:?}"))
     ))?;
     if let Some(why) = mismatch::<G>(semantics, name, version) {
-        console.line(format_args!("this program cannot play it: {why}"))?;
+        console.line(format_args!("this program cannot play it: {}", shown(&why.to_string())))?;
     }
     console.line(format_args!("players {players}, seats of the writer {:?}", report.seats()))?;
     console.line(format_args!("states differed at tick {tick}"))?;

@@ -69,14 +69,22 @@ impl<G: Game> Judge<G> {
     /// Verifies the bytes of a file. If the game panics, the verdict is `panicked`. Returns `None` if [`Judge::stop`]
     /// has ended the verification.
     ///
-    /// If the file is larger than the size limit, `bytes` may end one byte after the limit. The verdict is the same.
+    /// If the file is larger than the size limit, `bytes` may end one byte after the limit. The verdict is the same, but
+    /// the line has the digest of these bytes: see [`Judge::judge_part`].
     #[must_use]
     pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
+        self.judge_part(name, bytes, blake3::hash(bytes).as_bytes())
+    }
+
+    /// Like [`Judge::judge`], with `blake3` as the digest of the whole file.
+    #[must_use]
+    pub fn judge_part(&self, name: &str, bytes: &[u8], blake3: &[u8; 32]) -> Option<Judged> {
         let path = Path::new(name);
         let at_work = self.shared.watch.begin(path.to_path_buf(), None);
         match judge::<G>(bytes, &self.limits, &self.shared, at_work.work()) {
             Outcome::Report(report) => {
-                let line = report.json(path, &Digests::of(bytes, &self.limits), false, None);
+                let digests = Digests::of_part(bytes, &self.limits, (*blake3).into());
+                let line = report.json(path, &digests, false, None);
                 Some(Judged { verdict: report.verdict, line })
             }
             Outcome::OutOfTime { .. } | Outcome::Stopped => None,

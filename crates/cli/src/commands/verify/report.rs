@@ -37,7 +37,12 @@ impl Digests {
     /// The digests of a file. A file that is damaged, has another format version or exceeds a limit has no digest of
     /// its game.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
-        Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
+        Self::of_part(bytes, limits, blake3::hash(bytes))
+    }
+
+    /// As [`Digests::of`], for a file of which `bytes` may be only the beginning. `blake3` is its digest.
+    pub(super) fn of_part(bytes: &[u8], limits: &Limits, blake3: blake3::Hash) -> Self {
+        Digests { blake3, game: GameDigest::of_any(bytes, limits).ok() }
     }
 
     fn texts(&self) -> (String, Option<String>) {
