@@ -8,6 +8,7 @@ mod far;
 mod joint_batches;
 mod joint_edits;
 mod locks;
+mod lost_support;
 mod massless;
 mod names;
 mod phases;
