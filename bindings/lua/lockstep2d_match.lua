@@ -100,7 +100,9 @@ function Driver:update(now, read)
     end
     local size = self.size
     while ls.match_next_packet(self.match, self.address, ADDRESS_MAX, size, self.packet, PACKET_MAX, size + 1) do
-        self.send(ffi.string(self.address, size[0]), ffi.string(self.packet, size[1]))
+        -- A packet that cannot be sent is lost, as in the network.
+        local sent, why = pcall(self.send, ffi.string(self.address, size[0]), ffi.string(self.packet, size[1]))
+        self.send_error = not sent and why or self.send_error
     end
     return events
 end

@@ -1055,7 +1055,8 @@ export interface MatchOptions {
     seats: number;
     /** Number of seats of this peer: 1 by default; 0 for a spectator or a dedicated server. */
     ownSeats?: number;
-    /** Number of taken seats at which the match begins: 2 by default, or `seats` if that is less. */
+    /** Number of taken seats at which the match begins: 2 by default, or `seats` if that is less. That of the host
+     * counts. */
     startWith?: number;
     /** Bytes of an input, 1 to 512: 1 by default. */
     inputBytes?: number;

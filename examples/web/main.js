@@ -30,7 +30,7 @@ function frame() {
     player.guess = element("rollback").checked ? 8 : 0;
     draw(element("canvas"), player.game, 36);
     // A player who has joined late has no inputs of the first ticks, and therefore no replay.
-    element("save").disabled = player.recording.broken;
+    element("save").disabled = player.recording.broken || player.recording.ticks === 0;
     const others = player.relay.others.length;
     const line = player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : "no connection to the relay";
     element("text").textContent = `${status}, seat ${seats.join(" ")}, tick ${tick}, final ${final}\n${line}\n${player.game.hash()}` +

@@ -116,8 +116,8 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One combination of depth and prediction at each tick that [`CheckOptions::every`] selects, in turn. For depths of 1 to 8 ticks, this costs about eight
-    /// steps per tick.
+    /// One combination of depth and prediction at each tick that [`CheckOptions::every`] selects, in turn. For depths of
+    /// 1 to 8 ticks, this costs about eight steps per tick.
     #[default]
     InTurn,
     /// All combinations at every tick. For depths of 1 to 8 ticks, this costs 180 steps per tick.

@@ -154,6 +154,10 @@ impl Game for Sandbox {
             if !is_constant || self.world.execute(command).is_err() {
                 self.refused = self.refused.saturating_add(1);
             }
+            // The verifier discards the state. Further commands could take any time.
+            if self.world.is_work_exhausted() {
+                return;
+            }
         }
         self.world.step();
     }

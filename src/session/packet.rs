@@ -146,8 +146,8 @@ impl Composer {
         }
     }
 
-    /// Appends input runs: span, first tick, inputs of `size` bytes each. `room` bytes are left free. A run that does not
-    /// fit is shortened. Returns the first tick that was left out of each run; runs beyond the packet are not listed.
+    /// Appends input runs: span, first tick, inputs of `size` bytes each. `room` bytes are left free. A run that does
+    /// not fit is shortened. Returns the first tick that was left out of each run; runs beyond the packet are not listed.
     pub(super) fn runs<'a>(
         &mut self,
         size: usize,

@@ -20,7 +20,7 @@ pub(super) struct Resume {
     pub(super) tick: Tick,
     /// First tick that the peer lacked when the last run was sent.
     pub(super) lacks: Tick,
-    /// Time at which the run that begins with this tick was sent, or at which the peer was found to lack it.
+    /// Time at which the run that begins with `lacks` was sent, or at which the peer was found to lack it.
     pub(super) since: u64,
 }
 

@@ -53,7 +53,7 @@ pub(super) struct Row {
     pub(super) fin: Tick,
     /// Number of ticks that the game has played.
     pub(super) played: Tick,
-    /// For spans that end after `fin`, ascending: index and first tick whose input is missing.
+    /// For each span that ends after `fin`, in order: its index, and the first tick whose input the sender lacks.
     pub(super) have: Vec<(u16, Tick)>,
     /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,

@@ -16,6 +16,8 @@ use super::view::has_bit;
 pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
     next_at: u64,
+    /// [`Session::send_interval`] at the last call of [`Session::transmit`].
+    interval: u64,
     pub(super) urgent: bool,
     version: u32,
 }
@@ -122,6 +124,7 @@ impl Session {
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
+        self.outbox.interval = interval;
         let in_large = self.taking_part() > 16;
         let early = self.outbox.urgent && !in_large;
         if now < self.outbox.next_at && !early {
@@ -182,10 +185,11 @@ impl Session {
         if let Some(row) = foreign.first().and_then(|remote| remote.row.as_ref()) {
             row.write(&mut first_row);
         }
-        // Long runs leave room for a row. The first run may fill the packet, so the next packet begins after it.
+        // In every second packet, long runs leave room for a row. The first run may fill the packet, so the next packet begins after it.
         let mut runs: Vec<_> = spans.filter_map(|span| self.run_for(to, span)).collect();
         rotate_to(&mut runs, |run| run.span >= to.next_span);
-        let room = RESERVE + ROW_ID_BYTES + first_row.len();
+        let keeps_room = self.outbox.version.is_multiple_of(2);
+        let room = RESERVE + if keeps_room { ROW_ID_BYTES + first_row.len() } else { 0 };
         let parts = runs.iter().map(|run| (run.span, run.start, run.inputs));
         let ends = packet.runs(self.log.size(), room, parts);
         let resumes = next_resumes(&to.resumes, &runs, &ends, self.clock.active);
@@ -242,7 +246,7 @@ impl Session {
         }
         let number = u16::try_from(index).ok()?;
         // A receiver drops inputs after a gap, so a lost run begins the series again.
-        let patience = receiver.link.round_trip + 3 * self.send_interval();
+        let patience = receiver.link.round_trip + 3 * self.outbox.interval;
         let goes_on = |resume: &&Resume| {
             let is_lost = resume.lacks == lacks && self.clock.active > resume.since.saturating_add(patience);
             !is_lost && (lacks..until).contains(&resume.tick)

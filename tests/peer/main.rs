@@ -280,7 +280,7 @@ fn a_late_player_who_is_alone_plays_at_the_rate_of_the_game() {
     assert!((115..=125).contains(&played), "{played} ticks in 2 s");
 }
 
-/// Without a tick, only silence shows that the contact has left.
+/// Before the first tick no play can stall, so that only missing packets show that the contact has left.
 #[test]
 fn a_spectator_whose_contact_leaves_the_lobby_finds_another_one() {
     let options = PeerOptions { start_with: 3, ..PeerOptions::rollback() };

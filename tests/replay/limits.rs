@@ -3,7 +3,12 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use lockstep2d::replay::{LimitKind, Limits, RawReplay, Step, Verdict, verify};
+use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::replay::{LimitKind, Limits, RawReplay, Recording, Step, Verdict, verify};
+use lockstep2d::world::{BodyPose, Command, Config};
 
 use crate::counter::{Counter, add, inputs_at};
 use crate::forge::{Forged, forge};
@@ -139,5 +144,46 @@ fn memory_follows_the_file_and_not_its_length_fields() {
             forged.header[setup + 4..setup + 12].copy_from_slice(&length.to_le_bytes());
         });
         assert_small(&damaged, &format!("a string that claims {length} bytes"));
+    }
+}
+
+/// A limit may be reached in the middle of a command. The verifier then discards the world, and does not step it.
+#[test]
+fn a_limit_within_a_command_is_a_verdict() {
+    let square = || vec![ShapeDef::new(Polygon::square(fx!(0.5)).unwrap())];
+    let pose = |number: i32| BodyPose {
+        position: Vec2::new(Fx::from(number % 20), Fx::from(number / 20)),
+        angle: Angle::ZERO,
+    };
+    let commands = vec![Command::SpawnEach {
+        body: BodyDef::dynamic(),
+        shapes: square(),
+        poses: (0..400).map(pose).collect(),
+    }];
+    let config = Config { gravity: Vec2::ZERO, ..Config::default() };
+    let setup = SandboxSetup { config, commands };
+    for sleeps in [false, true] {
+        let mut recording = Recording::<Sandbox>::start(&setup, 60).unwrap();
+        let bodies: Vec<_> = recording.game().world().bodies().map(|(body, _)| body).collect();
+        for tick in 0..12 {
+            let commands = match tick {
+                4 if sleeps => vec![Command::Sleep { body: bodies[0] }],
+                8 => bodies[40..60].iter().map(|&body| Command::Despawn { body }).collect(),
+                _ => vec![],
+            };
+            recording.step(&[commands]).unwrap();
+        }
+        let file = recording.finish().unwrap();
+        let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+        let (mut works, mut before) = (vec![], replay.work());
+        while replay.step() == Ok(Step::Ticked) {
+            works.push(replay.work() - before);
+            before = replay.work();
+        }
+        for limit in works[8].saturating_sub(400)..works[8] {
+            let limits = Limits { tick_work: limit, ..Limits::default() };
+            let verdict = verify::<Sandbox>(&file, &limits);
+            assert!(matches!(verdict, Verdict::LimitExceeded { .. }), "{limit} of {works:?}: {verdict}");
+        }
     }
 }

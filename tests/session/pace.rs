@@ -162,7 +162,7 @@ fn a_match_keeps_its_pace_when_the_latency_falls() {
     assert!((297..320).contains(&played), "{played} ticks in 5 s");
 }
 
-/// In matches of more than 32 peers, inputs wait for a packet in every third tick.
+/// In matches of more than 32 peers a packet is sent only in every third tick, and inputs wait for it.
 #[test]
 fn a_large_match_plays_at_full_speed() {
     let mut sim = players(34, link(40 * MS), |config| config.tick_micros = 50_000);

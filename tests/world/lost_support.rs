@@ -58,3 +58,22 @@ fn a_body_that_an_area_leaves_falls() {
         assert!(fallen > fx!(2), "phase {phase}: {fallen} m in a second");
     }
 }
+
+/// The area of a ship is switched off.
+#[test]
+fn a_body_whose_area_ends_falls() {
+    let config = Config { tick_rate: 240, gravity: Vec2::new(fx!(0), fx!(-3)), ..Config::default() };
+    let mut world = World::new(config).expect("valid");
+    let field = Area::new().acceleration((fx!(0), fx!(3)));
+    let ship = BodyDef::dynamic().gravity_scale(fx!(0)).never_sleeps();
+    let shapes = [rectangle(fx!(1), fx!(1)).sensor().area(field), square(fx!(0.1)).offset((fx!(0), fx!(5)))];
+    let ship = world.spawn(&ship, &shapes).expect("valid");
+    let held = spawn(&mut world, BodyDef::dynamic(), square(fx!(0.05)));
+    run(&mut world, 600);
+    let area = world.shapes_of(ship)[0];
+    world.set_area(area, None).expect("there");
+    let before = world.body(held).expect("there").position().y;
+    run(&mut world, 240);
+    let fallen = before - world.body(held).expect("there").position().y;
+    assert!(fallen > fx!(1.4), "{fallen} m in a second");
+}

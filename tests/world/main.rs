@@ -17,6 +17,7 @@ mod sensors;
 mod setters;
 mod settings;
 mod sleeping;
+mod woken_crowd;
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, ShapeId};
 use lockstep2d::fx;

@@ -1,5 +1,5 @@
 // Characters.
-import { byteArray, fail, flag, instance, onlyKnown } from "./check.js";
+import { byteArray, fail, flag, given, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
@@ -27,7 +27,9 @@ function writeState(at, state) {
     const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND) | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0);
     write("mover_state", at, { position, velocity, flags });
     if (ground !== undefined) {
-        write("mover_plane", fieldAt("mover_state", at, "ground"), onlyKnown(ground, PLANE, "`ground`"));
+        onlyKnown(ground, PLANE, "`ground`");
+        PLANE.forEach((name) => given(ground[name], `ground.${name}`));
+        write("mover_plane", fieldAt("mover_state", at, "ground"), ground);
     }
 }
 

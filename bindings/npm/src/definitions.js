@@ -236,8 +236,10 @@ function checkJoint(options, known) {
             onlyKnown(options[part], known, `\`${part}\` of a joint`);
         }
     }
-    if (options.motor !== undefined && options.motor.max === undefined) {
-        fail("`motor` of a joint needs `max`, its largest force or torque");
+    for (const name of ["motor", "linearMotor"]) {
+        if (options[name] !== undefined && options[name].max === undefined) {
+            fail(`\`${name}\` of a joint needs \`max\`, its largest force or torque`);
+        }
     }
     for (const name of ["limit", "springForce", "teeth", "wheels"]) {
         const items = options[name] === undefined ? [0, 0] : array(options[name], name);

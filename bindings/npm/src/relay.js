@@ -34,6 +34,7 @@ export class Relay {
     // Times of the last frame and, since then, of the question; whether the relay has sent the list of members.
     #heard;
     #asked;
+    #isOverdue = false;
     #entered = false;
     #closed = false;
     #ready;
@@ -94,6 +95,7 @@ export class Relay {
     #hear() {
         this.#heard = performance.now();
         this.#asked = undefined;
+        this.#isOverdue = false;
     }
 
     // A page cannot send pings, and the socket of a dead connection stays open for minutes. The relay returns a
@@ -107,7 +109,10 @@ export class Relay {
         if (!this.#entered) {
             now - this.#heard < CONNECT_MAX || this.#abandon();
         } else if (this.#asked !== undefined) {
-            now - this.#asked < LOST_AFTER || this.#abandon();
+            if (now - this.#asked >= LOST_AFTER) {
+                // An answer may wait behind this timer, as after a suspension of the page.
+                this.#isOverdue ? this.#abandon() : (this.#isOverdue = true);
+            }
         } else if (now - this.#heard >= ASK_AFTER) {
             this.#asked = now;
             this.send(this.own, new Uint8Array());

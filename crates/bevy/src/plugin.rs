@@ -85,7 +85,7 @@ impl LockstepSettings {
     }
 }
 
-/// Status of the game, updated in each frame while there is a game.
+/// Status of the game, updated in each frame. The default while there is no game.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {

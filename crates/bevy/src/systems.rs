@@ -56,7 +56,8 @@ pub(crate) fn write_views<G: LockstepGame>(
     all: Query<(Entity, &BodyView)>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Entities that the game has prepared as views. Views of a former game are not among them.
+    // Entities that the game has prepared as views. Those that the plugin has spawned for a former game are not among
+    // them.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         all.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();

@@ -17,7 +17,8 @@ const INSIDE: u8 = 150;
 
 /// Draws over the world, in metres with y upwards. Later shapes lie on top.
 ///
-/// [`Viewer::draw`](crate::Viewer::draw) passes a canvas to the game. A canvas can also draw into another list:
+/// [`Viewer::draw`](crate::Viewer::draw) passes the game a canvas that draws into the list of the viewer.
+/// [`Canvas::new`] makes one that draws into another [`DrawList`]:
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Aabb, Vec2}};

@@ -25,18 +25,18 @@ pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -
     let mut left = consumer.info().await.map_err(WorkerError::nats("read the results"))?.num_pending;
     let mut out = std::io::stdout().lock();
     while left > 0 || (follow && shutdown.is_running()) {
-        let batch = consumer.fetch().max_messages(BATCH).expires(EXPIRES).messages();
-        let mut batch = batch.await.map_err(WorkerError::nats("read the results"))?;
+        let most = if follow { BATCH } else { BATCH.min(usize::try_from(left).unwrap_or(BATCH)) };
+        let batch = consumer.fetch().max_messages(most).expires(EXPIRES).messages();
+        let batch = batch.await.map_err(WorkerError::nats("read the results"))?;
+        // The client drops messages of a batch that is read slowly, as by a pager.
+        let received: Vec<_> = batch.collect().await;
         let before = left;
-        while let Some(result) = batch.next().await {
+        for result in received {
             let message = result
                 .map_err(|error| WorkerError::Nats { what: "read the results", why: error.to_string() })?;
             out.write_all(&message.payload).map_err(WorkerError::Output)?;
             out.write_all(b"\n").map_err(WorkerError::Output)?;
             left = left.saturating_sub(1);
-            if left == 0 && !follow {
-                break;
-            }
         }
         out.flush().map_err(WorkerError::Output)?;
         if left == before && !follow {

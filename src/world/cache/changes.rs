@@ -65,19 +65,23 @@ impl Changes {
     }
 
     pub(crate) fn box_changed(&mut self, shape: u32) {
-        // Edits without ticks would otherwise lengthen the list for ever.
+        self.shapes.push(shape);
+    }
+
+    /// Removes repeated slots from a long list, which edits without ticks would lengthen for ever. Must not be called
+    /// within a tick, whose waking of islands reads the end of the list.
+    pub(crate) fn compact(&mut self) {
         if self.shapes.len() >= self.compact_at.max(COMPACT_MIN) {
             self.shapes.sort_unstable();
             self.shapes.dedup();
             self.compact_at = 2 * self.shapes.len();
         }
-        self.shapes.push(shape);
     }
 
     /// Records that the shapes of a body may have new pairs even if their fat boxes have not changed.
     pub(crate) fn body_changed(&mut self, body: &Body) {
         for id in body.shapes() {
-            self.box_changed(id.slot());
+            self.shapes.push(id.slot());
             if let Some(last) = self.last_boxes.get_mut(id.slot() as usize) {
                 *last = Aabb::NOWHERE;
             }

@@ -100,6 +100,7 @@ impl Scratch {
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         let body = state.bodies.at(slot);
         self.shapes.update_body(state, slot);
+        self.pairs.changes.compact();
         self.pairs.changes.body_changed(body);
         self.awake.body_changed(body);
     }

@@ -82,9 +82,11 @@ impl World {
 
     /// Ends the contacts of shapes that are about to be removed, changed or disabled. The next tick reports the ends.
     pub(super) fn end_contacts(&mut self, ids: &[ShapeId]) {
-        if ids.is_empty() || !self.spend_scan() {
+        if ids.is_empty() {
             return;
         }
+        // An exhausted budget must not leave contacts of removed shapes.
+        self.spend_scan();
         let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
         slots.sort_unstable();
         let ends = |(a, b): Pair| slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok();

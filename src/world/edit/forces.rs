@@ -8,8 +8,8 @@ use crate::math::{Angle, Fx, Vec2};
 use crate::world::World;
 use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
 
-/// Length in metres of a move that ends kept manifolds, which measure displacements modulo 1024 m.
-const KEPT_MOVE_MAX: Fx = fx!(512);
+/// Length in metres of a move that ends kept manifolds, which measure the sum of all moves modulo 1024 m.
+const KEPT_MOVE_MAX: Fx = fx!(1);
 
 impl World {
     /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up.

@@ -25,15 +25,16 @@ use crate::math::{Fx, Vec2, fx_mul};
 const SCANNED_PER_WORK: usize = 64;
 
 impl World {
-    /// Counts the work of a search of all contacts, including sleeping ones. Returns whether the budget covers it.
-    fn spend_scan(&mut self) -> bool {
+    /// Counts the work of a search of all contacts, including sleeping ones.
+    fn spend_scan(&mut self) {
         let count = self.state.contacts.len() + self.state.sleeping_contacts.len();
-        self.scratch.meter.spend(u64::try_from(count / SCANNED_PER_WORK).unwrap_or(u64::MAX))
+        self.scratch.meter.spend(u64::try_from(count / SCANNED_PER_WORK).unwrap_or(u64::MAX));
     }
 
     /// Drops the manifolds of a body whose shapes, pose or centre of mass change.
     fn end_manifolds(&mut self, body: u32) {
-        if !self.state.bodies.at(body).shapes().is_empty() && self.spend_scan() {
+        if !self.state.bodies.at(body).shapes().is_empty() {
+            self.spend_scan();
             self.state.end_manifolds(body);
         }
     }

@@ -7,10 +7,13 @@ use crate::body::{
     Area, BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassProperties,
     MassSource, Material, Name, ShapeDef, ShapeId, WorldError,
 };
+use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
 use crate::world::World;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching};
+use crate::world::islands::{
+    contact_ended, put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching,
+};
 
 impl World {
     /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body.
@@ -121,8 +124,9 @@ impl World {
         Ok(())
     }
 
-    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and velocity, but loses its
-    /// applied forces. A target of [`World::move_to`] is lost, with the velocity towards it. It has no contacts, its joints are not solved, and no query finds it.
+    /// Takes a body out of the simulation until [`World::enable`]. The body keeps its pose and velocity, but loses its
+    /// applied forces and its target, with the velocity towards the target. It has no contacts, its joints are not
+    /// solved, and no query finds it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if the body is not in the world.
@@ -222,8 +226,12 @@ impl World {
             (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
         };
         let changes_events = roles(&shape.def) != roles(def);
+        let changes_area = shape.def.area != def.area;
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
         self.prepare_mass(body, &mass);
+        if changes_area {
+            self.release_visitors(id.slot());
+        }
         if changes_events {
             self.end_contacts(&[id]);
         }
@@ -295,6 +303,16 @@ impl World {
             wake_joined(&mut self.state, &mut self.scratch, id);
             self.scratch.pairs.changes.rules_changed();
         }
+    }
+
+    /// Restarts the counts of ticks at rest of the bodies in an area that is about to change and may hold them.
+    fn release_visitors(&mut self, area: u32) {
+        self.spend_scan();
+        let is_visit =
+            |contact: &&Contact| contact.touching && (contact.shapes.0 == area || contact.shapes.1 == area);
+        let contacts = self.state.contacts.iter().chain(self.state.sleeping_contacts.iter());
+        let visits: Vec<_> = contacts.filter(is_visit).map(|contact| contact.shapes).collect();
+        visits.into_iter().for_each(|pair| contact_ended(&mut self.state, pair));
     }
 
     /// Replaces the mass of a body. Drops its manifolds, because lever arms are relative to the centre of mass.

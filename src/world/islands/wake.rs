@@ -24,6 +24,7 @@ pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: Isla
 
 /// Wakes a body with its island, and restarts its count of ticks at rest.
 pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    scratch.pairs.changes.compact();
     let body = state.bodies.at_mut(slot);
     let was_active = body.is_active();
     body.rest_ticks.reset();
@@ -115,6 +116,9 @@ pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [B
 
 /// Wakes bodies after a change of their joints that may affect whether they collide. Bodies may be listed repeatedly.
 pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, mut bodies: Vec<BodyId>) {
+    if bodies.is_empty() {
+        return;
+    }
     bodies.sort_unstable();
     bodies.dedup();
     for id in bodies {

@@ -194,7 +194,7 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // The meter may be exhausted here without ending the search for this shape: the budget covers comparing all
+        // Visits are counted after the search of a shape, which may therefore exceed the budget. It visits at most all
         // shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }

@@ -24,17 +24,15 @@ pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &T
             }
         }
     }
-    if !broken.is_empty() {
-        let mut parted = Vec::new();
-        for id in broken {
-            if let Some(joint) = state.joints.remove(id) {
-                let bodies = joint.def().bodies();
-                scratch.joint_links.remove(id, bodies);
-                parted.extend(<[_; 2]>::from(bodies));
-            }
+    let mut parted = Vec::new();
+    for id in broken {
+        if let Some(joint) = state.joints.remove(id) {
+            let bodies = joint.def().bodies();
+            scratch.joint_links.remove(id, bodies);
+            parted.extend(<[_; 2]>::from(bodies));
         }
-        joints_changed(state, scratch, parted);
     }
+    joints_changed(state, scratch, parted);
     scratch.awake.refresh(state);
 }
 

@@ -3,8 +3,8 @@
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units in each iteration of a joint that is solved in a block. A full block of 96 rows factors its matrix for the
-/// bias pass and for the relax pass, in several rounds if it has limits or motors.
+/// Work units in each iteration of a joint that is solved in a block. A full block of 96 rows factors its matrix for
+/// the bias pass and for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
 /// Number of active and sleeping contacts.

@@ -60,6 +60,10 @@ impl World {
         self.scratch.meter = WorkMeter::start(max);
     }
 
+    pub(crate) fn is_work_exhausted(&self) -> bool {
+        self.scratch.meter.is_exhausted()
+    }
+
     /// Ends the count, so that later ticks are not limited. Returns the work since the start.
     pub(crate) fn stop_work_meter(&mut self) -> u64 {
         core::mem::take(&mut self.scratch.meter).spent()

@@ -146,7 +146,7 @@ records! {
         seats: u32,
         /// Number of seats that this peer plays; 0 for a spectator or a dedicated server.
         own_seats: u32,
-        /// Number of seats that have to be taken before the first tick.
+        /// Number of seats that have to be taken before the first tick. That of the host counts.
         start_with: u32,
         /// Bytes of an input, 1 to 512.
         input_bytes: u32,
