@@ -5,19 +5,19 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{BodyPose, World};
 
-use super::{ball, run, spawn, square, weightless};
+use super::{rectangle, run, spawn, square, weightless};
 
-/// A row of boxes that sleep one by one is hit at one end. Each round of waking reaches the next box.
+/// Three rows of boxes that sleep one by one are hit at one end. Each round of waking reaches the next box of each row.
 #[test]
-fn a_row_of_sleepers_wakes_alike_after_a_restore() {
+fn rows_of_sleepers_wake_alike_after_a_restore() {
     let mut world = weightless();
-    let poses: Vec<_> = (0..5000i32)
-        .map(|x| BodyPose { position: Vec2::new(Fx::from(x) - fx!(2500), Fx::ZERO), angle: Angle::ZERO })
-        .collect();
+    let place = |number: i32| Vec2::new(Fx::from(number % 1800 - 900), Fx::from(3 * (number / 1800) - 3));
+    let pose = |number| BodyPose { position: place(number), angle: Angle::ZERO };
+    let poses: Vec<_> = (0..3 * 1800).map(pose).collect();
     world.spawn_each(&BodyDef::dynamic().asleep(), &[square(fx!(0.5))], &poses).expect("valid");
-    // The last box is hit first, so that the boxes do not wake in the order of their slots.
-    let thrown = BodyDef::dynamic().position((fx!(2501), fx!(0))).velocity((fx!(-100), fx!(0)));
-    spawn(&mut world, thrown, ball(fx!(0.5)));
+    // The last boxes are hit first, so that they do not wake in the order of their slots.
+    let thrown = BodyDef::dynamic().position((fx!(900.5), fx!(0))).velocity((fx!(-100), fx!(0)));
+    spawn(&mut world, thrown, rectangle(fx!(0.5), fx!(4)));
     let start = world.save();
     let mut decoded = World::from_bytes(&world.to_bytes()).expect("a snapshot");
     let mut hashes = Vec::new();
