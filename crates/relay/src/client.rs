@@ -1,4 +1,5 @@
 //! [`Relay`]: a member of a room, as a transport.
+#![expect(clippy::disallowed_types, reason = "a connection is observed in real time")]
 
 use core::fmt;
 use core::time::Duration;

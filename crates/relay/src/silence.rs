@@ -1,4 +1,5 @@
 //! [`Silence`]: detects a connection that no longer carries anything, such as after a change of networks.
+#![expect(clippy::disallowed_types, reason = "a connection is observed in real time")]
 
 use core::time::Duration;
 use std::time::Instant;
