@@ -83,7 +83,7 @@ test("a connection without an answer is opened again", async (t) => {
     relay.onMembers = members;
     pass(14);
     assert.equal(relay.isOpen, true);
-    pass(3);
+    pass(4);
     assert.deepEqual([dead.readyState, Socket.all.length, relay.isOpen], [2, 2, false]);
     const again = Socket.all[1];
     again.enter();
@@ -94,7 +94,7 @@ test("a connection without an answer is opened again", async (t) => {
     again.frame(OTHER, [2]);
     assert.deepEqual([packets, relay.isOpen], [[[2]], true]);
     // A relay that accepts connections, and then sends nothing.
-    pass(16);
+    pass(17);
     assert.equal(Socket.all.length, 3);
     pass(11);
     assert.equal(Socket.all.length, 4);
