@@ -371,7 +371,8 @@ fn a_body_moved_by_a_kilometre_leaves_its_contact() {
     let slope = Geometry::segment((fx!(-1500), fx!(-150)), (fx!(1500), fx!(150))).expect("valid");
     spawn(&mut world, BodyDef::fixed(), ShapeDef::new(slope));
     let def = BodyDef::dynamic().position((fx!(600), fx!(61)));
-    let body = spawn(&mut world, def, ball(fx!(0.5)).friction(fx!(1)));
+    let def = def.angle(Angle::from_radians(fx!(0.1)));
+    let body = spawn(&mut world, def, square(fx!(0.5)).friction(fx!(1)));
     run(&mut world, 60);
     let position = world.body(body).expect("there").position();
     let place = position - Vec2::new(fx!(1024), fx!(0));

@@ -41,7 +41,7 @@ enum Turn {
     Concave,
 }
 
-/// What a link does with the normal that it and the shape would have without the rest of the chain.
+/// Decision on a candidate normal: the one that the link and the shape would have without the rest of the chain.
 enum Verdict {
     /// The link pushes along it.
     Own,
