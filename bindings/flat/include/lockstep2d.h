@@ -936,7 +936,7 @@ typedef struct ls2d_match_config {
     uint32_t seats;
     /* Number of seats that this peer plays; 0 for a spectator or a dedicated server. */
     uint32_t own_seats;
-    /* Number of seats that have to be taken before the first tick. */
+    /* Number of seats that have to be taken before the first tick. That of the host counts. */
     uint32_t start_with;
     /* Bytes of an input, 1 to 512. */
     uint32_t input_bytes;
