@@ -220,6 +220,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
     /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
+    /// Inputs that were issued count for one tick: forget key presses then. When the input delay grows, further calls
+    /// ask for the inputs of the additional ticks before the next tick is played.
+    ///
     /// # Errors
     /// [`PeerError`] if there is not one input for each own seat, an input cannot be encoded, or the game or its replay
     /// cannot continue. Inputs that are not due yet are no error: the result is `false`.

@@ -153,7 +153,7 @@ impl Session {
     }
 
     /// First tick of one of this peer's spans whose input must not be issued yet. The inputs of the first `delay + 1`
-    /// ticks are issued at once, so that no peer waits for them.
+    /// ticks are issued at once, one in each call of `advance`, so that no peer waits for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
@@ -165,6 +165,9 @@ impl Session {
 
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Call it while
     /// [`is_due`](Session::is_due). Returns whether the inputs were issued. If not, the caller may pass them again.
+    ///
+    /// Inputs that were issued count for one tick. When the input delay grows, further calls ask for the inputs of the
+    /// additional ticks before the next tick is played.
     ///
     /// # Errors
     /// [`InputSize`] unless there is one input for each own seat. Nothing is issued or played.
@@ -182,6 +185,9 @@ impl Session {
             self.outbox.urgent = true;
             self.settle();
             self.agree();
+            if self.issues() {
+                return Ok(true);
+            }
         }
         self.resolve();
         if self.play.played < self.play_limit() {
@@ -203,9 +209,8 @@ impl Session {
         for (index, seat) in own {
             let place = bits(seats).position(|other| other == seat).unwrap_or(0);
             let Some(input) = inputs.chunks_exact(self.log.size()).nth(place) else { continue };
-            let limit = self.issue_limit(index);
-            while self.log.next(index) < limit {
-                let tick = self.log.next(index);
+            let tick = self.log.next(index);
+            if tick < self.issue_limit(index) {
                 self.log.add(index, tick, input);
                 self.play.note_change(tick);
                 issued = true;

@@ -1,6 +1,7 @@
 //! Matches of a game with physics over a network in memory, in simulated time.
 
 mod another_match;
+mod presses;
 mod pushers;
 #[cfg(feature = "sealed")]
 mod sealed;
