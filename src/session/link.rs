@@ -79,7 +79,7 @@ impl Link {
         }
     }
 
-    fn measure(&mut self, trip: u64) {
+    pub(super) fn measure(&mut self, trip: u64) {
         if self.round_trip == 0 {
             self.round_trip = trip.max(1);
             self.jitter = trip / 4;

@@ -151,7 +151,7 @@ impl Session {
         let now = self.clock.now;
         // The inputs have to be in time for a peer that is about to play.
         let played = self.play.played;
-        if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
+        if played == 0 || self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());
         }
         if now < self.pace.delay_at.saturating_add(DELAY_INTERVAL) {
@@ -171,7 +171,7 @@ impl Session {
         let tick = self.pace.tick_micros.max(1);
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let players = self.peers.voters().filter(|(_, remote)| {
-            remote.id != self.me && within(remote.heard, fresh, active) && self.view.seats_of(remote.id) != 0
+            remote.id != self.me && within(remote.fresh, fresh, active) && self.view.seats_of(remote.id) != 0
         });
         let latency = players.map(|(_, remote)| remote.link.round_trip / 2 + 2 * remote.link.jitter).max();
         // Inputs wait for the next packet, which large matches do not send in every tick.

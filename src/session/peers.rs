@@ -11,6 +11,8 @@ use super::view::{View, bit};
 const PEERS_MAX: usize = 192;
 /// Time for which a peer without a vote is served after its last packet, in microseconds.
 const SERVED: u64 = 5_000_000;
+/// Longest round trip through other peers that is measured, in microseconds. A longer one is due to an outage.
+const RELAYED_MAX: u64 = 1_000_000;
 
 /// The series of runs of a span that do not fit in one packet.
 #[derive(Clone, Copy, Debug)]
@@ -45,12 +47,28 @@ pub(super) struct Remote {
     pub(super) next_span: u16,
     pub(super) next_row: Option<PeerId>,
     pub(super) link: Link,
+    /// An own input, by span and tick, and the time at which it was issued, while this peer is not heard. Its round
+    /// trip ends with a relayed row that acknowledges the input.
+    pub(super) probe: Option<(usize, Tick, u64)>,
 }
 
 impl Remote {
     /// Whether the peer is served even if it has no vote.
     pub(super) fn is_served(&self, now: u64) -> bool {
         within(self.heard.max(self.attached), SERVED, now)
+    }
+
+    /// Ends the measurement of a round trip if a row acknowledges its input.
+    pub(super) fn end_probe(&mut self, row: &Row, heard: u64, now: u64) {
+        let Some((span, tick, at)) = self.probe else { return };
+        if !row.have.iter().any(|&(number, next)| usize::from(number) == span && next > tick) {
+            return;
+        }
+        self.probe = None;
+        let trip = now.saturating_sub(at);
+        if trip < RELAYED_MAX && !within(self.heard, heard, now) {
+            self.link.measure(trip);
+        }
     }
 
     /// Time of the last sign of life, or the time at which the peer became known.
@@ -101,6 +119,7 @@ impl Peers {
             next_span: 0,
             next_row: None,
             link: Link::default(),
+            probe: None,
         });
     }
 
@@ -128,6 +147,13 @@ impl Peers {
             self.list.remove(place);
             self.index(view);
             true
+        }
+    }
+
+    /// Begins to measure the round trips to peers that are not heard, when an own input is issued.
+    pub(super) fn probe(&mut self, span: usize, tick: Tick, heard: u64, now: u64) {
+        for remote in self.list.iter_mut().skip(1).filter(|remote| !within(remote.heard, heard, now)) {
+            remote.probe.get_or_insert((span, tick, now));
         }
     }
 

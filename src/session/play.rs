@@ -125,7 +125,7 @@ impl Session {
     }
 
     fn play_limit(&self) -> Tick {
-        let limit = if self.view.voter(self.me).is_some() {
+        let limit = if self.view.voter(self.me).is_some() && !self.status().is_closed() {
             let guessed = self.progress.complete.saturating_add(Tick::from(self.config.guess));
             let begun = if self.view.begun { guessed } else { self.progress.complete };
             begun.min(self.progress.fin.saturating_add(Tick::from(self.config.history)))
@@ -135,15 +135,15 @@ impl Session {
         limit.min(self.stop())
     }
 
-    /// Whether the next tick is due, and can be played or needs inputs of this peer's seats.
+    /// Whether the next tick is due, and can be played or needs inputs of this peer's seats. A closed session still
+    /// plays final ticks.
     #[must_use]
     pub fn is_due(&self, now: u64) -> bool {
-        let open = !self.status().is_closed();
-        open && self.pace.is_time(now) && (self.play.played < self.play_limit() || self.issues())
+        self.pace.is_time(now) && (self.play.played < self.play_limit() || self.issues())
     }
 
     pub(super) fn issues(&self) -> bool {
-        self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
+        !self.status().is_closed() && self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
     }
 
     fn own_spans(&self) -> impl Iterator<Item = (usize, u8)> {
@@ -213,13 +213,14 @@ impl Session {
             if tick < self.issue_limit(index) {
                 self.log.add(index, tick, input);
                 self.play.note_change(tick);
+                self.peers.probe(index, tick, self.config.timing.heard, self.clock.active);
                 issued = true;
             }
         }
         issued
     }
 
-    /// Plays ticks again if their inputs differ from those used.
+    /// Plays ticks again if their inputs differ from those used, and takes back ticks after the end of the match.
     pub(super) fn resolve(&mut self) {
         let mut tick = self.play.dirty.max(self.play.used_from);
         self.play.dirty = NEVER;
@@ -237,6 +238,9 @@ impl Session {
                 break;
             }
             tick += 1;
+        }
+        if self.play.played > self.stop() {
+            self.rewind(self.stop());
         }
         self.confirm();
     }

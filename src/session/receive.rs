@@ -63,6 +63,7 @@ impl Session {
             return;
         }
         remote.fresh = Some(active);
+        remote.end_probe(&row, self.config.timing.heard, active);
         if row.connected {
             remote.contact = active;
         }

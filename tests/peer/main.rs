@@ -5,6 +5,7 @@ mod presses;
 mod pushers;
 #[cfg(feature = "sealed")]
 mod sealed;
+mod start;
 
 use std::time::Duration;
 

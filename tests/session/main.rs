@@ -7,6 +7,7 @@
 )]
 
 mod departures;
+mod ends;
 #[cfg(feature = "__faults")]
 mod faults;
 mod game;

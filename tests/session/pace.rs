@@ -64,6 +64,17 @@ fn lockstep_plays_at_full_speed_at_any_latency() {
     }
 }
 
+/// Inputs of two players that do not hear each other pass a third one.
+#[test]
+fn lockstep_plays_at_full_speed_in_a_star() {
+    let mut sim = players(3, link(75 * MS), |_| ());
+    (sim.links[1][2].exists, sim.links[2][1].exists) = (false, false);
+    let pace = pace(&mut sim, 20);
+    let delays: Vec<_> = sim.peers.iter().map(|peer| peer.session.delay()).collect();
+    assert!(pace >= 5900, "{pace} hundredths of a tick per second, delays {delays:?}");
+    assert!(delays[0] <= documented_delay(75 * MS) && delays[1] <= documented_delay(150 * MS) + 2, "{delays:?}");
+}
+
 #[test]
 fn a_fixed_delay_of_the_latency_and_a_tick_is_enough() {
     for latency in [20, 60, 150].map(|latency| latency * MS) {

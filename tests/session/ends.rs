@@ -1,0 +1,52 @@
+//! Ends of a match that come after a peer has played further, or before it has played everything.
+
+use lockstep2d::session::{Config, Role, Status};
+
+use super::pace::{link, players};
+use super::sim::{MS, S};
+
+#[test]
+fn ticks_after_the_end_are_taken_back() {
+    for guess in [0, 8] {
+        let mut sim = players(2, link(50 * MS), |config| {
+            (config.guess, config.save_interval) = (guess, 1);
+            config.delay_min = u16::from(guess > 0);
+        });
+        sim.run(5 * S);
+        let end = sim.peers[0].session.played();
+        sim.peers[0].session.end_at(end);
+        sim.run(6500 * MS);
+        for peer in &sim.peers {
+            let Some((ticks, _)) = peer.finished else { panic!("{:?}", peer.session.status()) };
+            assert!(ticks >= end);
+            assert_eq!((peer.session.played(), peer.game.states.len()), (ticks, ticks as usize + 1));
+        }
+        assert_eq!(sim.failure, None);
+    }
+}
+
+#[test]
+fn a_closed_session_plays_the_final_ticks() {
+    let mut sim = players(2, link(30 * MS), |_| ());
+    let first = sim.peers[0].session.view().clone();
+    sim.links = vec![vec![link(30 * MS); 3]; 3];
+    sim.add(Config::new(5, 2), Role::Spectator, &first, 1000);
+    sim.introduce(2, 0);
+    sim.start(2, 0);
+    sim.run(2 * S);
+    sim.peers[2].in_menu = true;
+    sim.peers[0].session.end_at(400);
+    sim.run(20 * S);
+    let spectator = &mut sim.peers[2];
+    assert_eq!(spectator.session.status(), Status::Closed);
+    let before = spectator.session.played();
+    assert!(before < 200, "{before}");
+    for step in 0..100 {
+        let now = sim.now + step * 16 * MS;
+        while spectator.session.is_due(now) {
+            assert_eq!(spectator.session.advance(now, &[]), Ok(false));
+            spectator.game.fulfil(&mut spectator.session).expect("valid");
+        }
+    }
+    assert_eq!((spectator.session.played(), spectator.game.states.len()), (400, 401));
+}
