@@ -143,7 +143,8 @@ impl Session {
     }
 
     pub(super) fn issues(&self) -> bool {
-        !self.status().is_closed() && self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
+        !self.status().is_closed()
+            && self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
     }
 
     fn own_spans(&self) -> impl Iterator<Item = (usize, u8)> {
