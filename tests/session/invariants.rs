@@ -1,6 +1,6 @@
 //! One history, equal states, and a quorum that holds all ticks before the cut of a view.
 
-use lockstep2d::session::{Event, PeerId, Status, View};
+use lockstep2d::session::{Event, InputStatus, PeerId, Status, Tick, TickInputs, View};
 
 use super::game::mix_inputs;
 use super::sim::{MS, S, Sim, id};
@@ -121,6 +121,7 @@ impl Sim {
             let Some(inputs) = self.peers[index].session.final_inputs(tick) else {
                 return self.fail(format!("S1 {index} lacks inputs of final tick {tick}"));
             };
+            self.check_issued(index, tick, &inputs);
             let Some(&before) = self.history.get(tick as usize) else {
                 return self.fail(format!("S1 tick {tick} of {index} follows no known tick"));
             };
@@ -135,6 +136,22 @@ impl Sim {
             }
         }
         self.peers[index].seen_final = fin;
+    }
+
+    /// The final input of each seat is the one that its owner issued for the tick.
+    fn check_issued(&mut self, index: usize, tick: Tick, inputs: &TickInputs) {
+        let view = self.peers[index].session.view();
+        let wrong =
+            view.spans.iter().enumerate().filter(|(_, span)| span.contains(tick)).find(|(number, span)| {
+                let owner = (0..self.peers.len()).find(|&peer| id(peer) == span.owner).expect("a peer");
+                let issued = self.peers[owner].issued.get(number);
+                let issued = issued.and_then(|issued| issued.get((tick - span.from) as usize));
+                let (input, status) = inputs.seat(span.seat).expect("a seat of the match");
+                status != InputStatus::Confirmed || issued.is_none_or(|issued| issued != input)
+            });
+        if let Some((number, span)) = wrong {
+            self.fail(format!("S8 input of span {number}, seat {}, tick {tick} was not issued", span.seat));
+        }
     }
 
     /// Confirmed ticks belong to the shared history; memory is bounded.

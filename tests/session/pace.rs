@@ -72,7 +72,10 @@ fn lockstep_plays_at_full_speed_in_a_star() {
     let pace = pace(&mut sim, 20);
     let delays: Vec<_> = sim.peers.iter().map(|peer| peer.session.delay()).collect();
     assert!(pace >= 5900, "{pace} hundredths of a tick per second, delays {delays:?}");
-    assert!(delays[0] <= documented_delay(75 * MS) && delays[1] <= documented_delay(150 * MS) + 2, "{delays:?}");
+    assert!(
+        delays[0] <= documented_delay(75 * MS) && delays[1] <= documented_delay(150 * MS) + 2,
+        "{delays:?}"
+    );
 }
 
 #[test]

@@ -77,6 +77,8 @@ pub(crate) struct Peer {
     pub(crate) seen_view: u32,
     pub(crate) seen_final: Tick,
     pub(crate) seen_confirmed: Tick,
+    /// Issued inputs of each of the peer's spans, by the number of the span.
+    pub(crate) issued: BTreeMap<usize, Vec<Vec<u8>>>,
     input: u64,
 }
 
@@ -177,6 +179,7 @@ impl Sim {
             seen_view: first.number,
             seen_final: 0,
             seen_confirmed: 0,
+            issued: BTreeMap::new(),
             input: seed,
         });
         index
@@ -272,7 +275,16 @@ impl Sim {
             let size = self.input_bytes;
             let one = |seat| std::iter::once(first(seat)).chain((1..size).map(move |at| random(seat, at)));
             let input: Vec<u8> = (0..seats).flat_map(one).collect();
+            let spans = peer.session.view().spans.iter().enumerate();
+            let own = spans.filter(|(_, span)| span.owner == id(index) && span.is_open());
+            let own: Vec<(usize, u8)> = own.map(|(number, span)| (number, span.seat)).collect();
             if peer.session.advance(local, &input) == Ok(true) {
+                for &(number, seat) in &own {
+                    let place = own.iter().filter(|(_, other)| *other < seat).count();
+                    let issued =
+                        input.chunks_exact(size as usize).nth(place).expect("an input for each seat");
+                    peer.issued.entry(number).or_default().push(issued.to_vec());
+                }
                 // A peer holds its input for a while.
                 peer.input =
                     if peer.input.is_multiple_of(3) { mix(peer.input, local) } else { peer.input + 1 };
