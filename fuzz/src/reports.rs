@@ -114,7 +114,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
     assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
     let mirrored = compare::<Sandbox>(&right, &left, &limits).map(|found| found.blame);
     let same = match (found.blame, &mirrored) {
-        (Blame::Side(_), Ok(Blame::Side(_))) => true,
+        (Blame::Side(side), Ok(Blame::Side(mirrored))) => side != *mirrored,
         (blame, Ok(mirrored)) => blame == *mirrored,
         (_, Err(_)) => false,
     };

@@ -205,7 +205,8 @@ impl Body {
         let v = self.velocity();
         let u = widen(self.spin);
         let squared = v.dot(v).saturating_add(fx_mul(u, u));
-        fx_mul(self.mass.mass, squared) / 2
+        let doubled = fx_mul(self.mass.mass, squared);
+        if doubled == Fx::MAX { fx_mul(self.mass.mass, squared / 2) } else { doubled / 2 }
     }
 
     /// Shapes in order of attachment.
@@ -337,10 +338,11 @@ impl Body {
         self.torque = self.torque.saturating_add((point - self.centre).cross(force));
     }
 
-    /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`.
+    /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`. A velocity above
+    /// [`SPEED_MAX`] keeps its direction.
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
-        let dv = |p: Fx| narrow::<fixed::types::extra::U21>(divide(p, self.mass.mass));
-        self.velocity += Vec2::new(dv(impulse.x), dv(impulse.y));
+        let dv = Vec2::new(divide(impulse.x, self.mass.mass), divide(impulse.y, self.mass.mass));
+        self.velocity = (self.velocity() + dv).shortened(SPEED_MAX.into()).narrow();
         self.apply_angular_impulse((point - self.centre).cross(impulse));
     }
 

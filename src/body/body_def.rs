@@ -224,7 +224,7 @@ impl BodyDef {
         self
     }
 
-    /// Starts the body asleep and at rest.
+    /// Starts the body asleep and at rest. Sensors at rest that exist already detect it when it wakes.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;

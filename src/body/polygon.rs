@@ -161,7 +161,7 @@ impl Polygon {
         Self::new(&points)?.rounded(self.radius.into())
     }
 
-    /// Returns the polygon with its outline moved outwards by `radius` metres.
+    /// Returns the polygon with the rounding radius `radius` in metres: the outline of the vertices, moved outwards.
     ///
     /// # Errors
     /// If the radius is negative, or the outline leaves the range of ±110 m.

@@ -120,7 +120,7 @@ pub enum Depths {
     /// 1 to 8 ticks, this costs about eight steps per tick.
     #[default]
     InTurn,
-    /// All combinations at every tick. For depths of 1 to 8 ticks, this costs 180 steps per tick.
+    /// All combinations at each of these ticks. For depths of 1 to 8 ticks, this costs 180 steps per tick.
     Each,
 }
 

@@ -201,6 +201,19 @@ impl Vec2<Fx> {
         Vec2::new(narrow(self.x), narrow(self.y))
     }
 
+    /// The vector, shortened so that no component exceeds `max`.
+    pub(crate) fn shortened(self, max: Fx) -> Self {
+        let largest = self.x.unsigned_abs().max(self.y.unsigned_abs()).to_bits();
+        if largest <= max.unsigned_abs().to_bits() {
+            return self;
+        }
+        let shorten = |v: Fx| {
+            let bits = i128::from(v.to_bits()) * i128::from(max.to_bits()) / i128::from(largest);
+            Fx::from_bits(saturate_wide(bits))
+        };
+        Vec2::new(shorten(self.x), shorten(self.y))
+    }
+
     /// `self . other`, rounded once, saturated.
     #[inline]
     #[must_use]

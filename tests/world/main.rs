@@ -5,6 +5,7 @@ mod crossings;
 mod equality;
 mod events;
 mod far;
+mod impulses;
 mod joint_batches;
 mod joint_edits;
 mod locks;

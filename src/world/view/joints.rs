@@ -13,7 +13,8 @@ impl World {
         Some((a.transform().apply(def.frame_a.anchor), b.transform().apply(def.frame_b.anchor)))
     }
 
-    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise, including full turns.
+    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise, including full turns. Turns are
+    /// counted while the joint acts on a dynamic body.
     #[must_use]
     pub fn joint_angle(&self, id: JointId) -> Option<Fx> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
