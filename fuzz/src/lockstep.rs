@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
-use lockstep2d::world::{BodyField, Command, Events, Snapshot, World};
+use lockstep2d::world::{Backend, BodyField, Command, Events, Snapshot, World};
 
 use crate::generator::{self, Generator};
 use crate::source::Source;
@@ -42,7 +42,7 @@ pub struct Seen {
     pub ordinary: bool,
 }
 
-/// A variant that must not change the result.
+/// A variant that must not change the result. With [`BroadPhaseKind::BruteForce`] it uses no vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Variant {
     broad_phase: BroadPhaseKind,
@@ -177,14 +177,16 @@ impl Variant {
     fn begin(self, plain: &World) -> World {
         let mut world = plain.clone();
         world.set_broad_phase(self.broad_phase);
+        if self.broad_phase == BroadPhaseKind::BruteForce {
+            world.set_backend(Backend::Scalar);
+        }
         world
     }
 
     fn perturb(self, source: &mut Source<'_>, world: &mut World) {
         match self.disturbance {
             Disturbance::ThroughBytes if source.below(4) == 0 => {
-                *world = World::from_bytes(&world.to_bytes()).expect("a world's own bytes");
-                world.set_broad_phase(self.broad_phase);
+                *world = self.begin(&World::from_bytes(&world.to_bytes()).expect("a world's own bytes"));
             }
             Disturbance::ClearedScratch if source.below(2) == 0 => world.clear_scratch(),
             _ => {}

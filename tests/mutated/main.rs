@@ -76,6 +76,9 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     }
     figures.print("snapshots");
     assert!(figures.answers.len() >= 6, "{:?}", figures.answers);
+    for answer in ["accepted", "lived"] {
+        assert!(figures.answers.contains_key(answer), "{:?}", figures.answers);
+    }
 }
 
 /// In a file, a vacant slot takes the bytes of its generation. In memory, it takes as much as a body.

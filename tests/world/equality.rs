@@ -3,7 +3,7 @@
 
 use lockstep2d::body::ShapeId;
 use lockstep2d::collision::BroadPhaseKind;
-use lockstep2d::world::{Command, ContactEvent, Events, SensorChange, World};
+use lockstep2d::world::{Backend, Command, ContactEvent, Events, SensorChange, World};
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
@@ -21,10 +21,21 @@ enum Variant {
     Bytes,
     /// Saves, simulates three ticks with other commands, and restores.
     RolledBack,
+    /// Uses no vector instructions.
+    Scalar,
+    /// Steps on three threads, if the feature `parallel` is enabled.
+    Threads,
 }
 
-const OTHERS: [Variant; 5] =
-    [Variant::BruteForce, Variant::SweepAndPrune, Variant::Cleared, Variant::Bytes, Variant::RolledBack];
+const OTHERS: [Variant; 7] = [
+    Variant::BruteForce,
+    Variant::SweepAndPrune,
+    Variant::Cleared,
+    Variant::Bytes,
+    Variant::RolledBack,
+    Variant::Scalar,
+    Variant::Threads,
+];
 
 impl Variant {
     fn begin(self, world: &World) -> World {
@@ -32,6 +43,8 @@ impl Variant {
         match self {
             Variant::BruteForce => world.set_broad_phase(BroadPhaseKind::BruteForce),
             Variant::SweepAndPrune => world.set_broad_phase(BroadPhaseKind::SweepAndPrune),
+            Variant::Scalar => assert!(world.set_backend(Backend::Scalar)),
+            Variant::Threads => assert_eq!(world.force_threads(3), cfg!(feature = "parallel")),
             _ => {}
         }
         world
@@ -39,7 +52,7 @@ impl Variant {
 
     fn perturb(self, world: &mut World, churn: &Churn) {
         match self {
-            Variant::BruteForce | Variant::SweepAndPrune => {}
+            Variant::BruteForce | Variant::SweepAndPrune | Variant::Scalar | Variant::Threads => {}
             Variant::Cleared => world.clear_scratch(),
             Variant::Bytes => *world = World::from_bytes(&world.to_bytes()).expect("its own bytes"),
             Variant::RolledBack => {

@@ -1,0 +1,33 @@
+//! Impulses whose velocity exceeds the formats.
+
+use lockstep2d::body::BodyDef;
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::Explosion;
+
+use super::{ball, spawn, weightless};
+
+fn direction_is(v: Vec2<Fx>, expected: (Fx, Fx)) {
+    let sine = v.normalized().expect("fast").widen().cross(Vec2::from(expected));
+    assert!(sine.abs() < fx!(0.0001) && v.x > fx!(0), "{v:?} is not along {expected:?}");
+}
+
+#[test]
+fn a_light_body_moves_in_the_direction_of_its_impulse() {
+    for radius in [fx!(0.05), fx!(0.01)] {
+        let mut world = weightless();
+        let id = spawn(&mut world, BodyDef::dynamic(), ball(radius));
+        world.apply_impulse_to_centre(id, (fx!(10), fx!(5))).expect("there");
+        direction_is(world.body(id).expect("there").velocity(), (fx!(0.894427), fx!(0.447214)));
+        world.step();
+        direction_is(world.body(id).expect("there").velocity(), (fx!(0.894427), fx!(0.447214)));
+    }
+}
+
+#[test]
+fn light_debris_flies_away_from_an_explosion() {
+    let mut world = weightless();
+    let id = spawn(&mut world, BodyDef::dynamic().position((fx!(1.2), fx!(0.5))), ball(fx!(0.05)));
+    world.explode(&Explosion::new(Vec2::ZERO, fx!(500))).expect("valid");
+    direction_is(world.body(id).expect("there").velocity(), (fx!(0.923077), fx!(0.384615)));
+}
