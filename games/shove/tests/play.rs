@@ -44,8 +44,10 @@ fn free_address() -> String {
 }
 
 fn play(arguments: &[&str], replay: &Path) -> Child {
+    let seed: &[&str] = if arguments.contains(&"--seed") { &[] } else { &["--seed", "5"] };
     Command::new(env!("CARGO_BIN_EXE_shove"))
-        .args(["play", "--json", "--seed", "5", "--patience", PATIENCE])
+        .args(["play", "--json", "--patience", PATIENCE])
+        .args(seed)
         .args(arguments)
         .arg("--output")
         .arg(replay)
@@ -161,16 +163,20 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
 }
 
 #[test]
-fn another_seed_is_another_match() {
-    let folder = Folder::new("terms");
-    let address = free_address();
-    let mut host = play(&["--host", &address], &folder.file("0"));
-    let guest = play(&["--join", &address, "--seats", "2"], &folder.file("1"));
-    let output = guest.wait_with_output().unwrap();
-    host.kill().unwrap();
-    host.wait().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
-    assert!(text(&output).contains("number of seats 2 here and 4 there"), "{}", text(&output));
+fn another_seed_or_number_of_seats_is_another_match() {
+    for (option, value, why) in
+        [("--seats", "2", "number of seats 2 here and 4 there"), ("--seed", "6", "setup ")]
+    {
+        let folder = Folder::new(&format!("terms{option}"));
+        let address = free_address();
+        let mut host = play(&["--host", &address], &folder.file("0"));
+        let guest = play(&["--join", &address, option, value], &folder.file("1"));
+        let output = guest.wait_with_output().unwrap();
+        host.kill().unwrap();
+        host.wait().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(text(&output).contains(why), "{}", text(&output));
+    }
 }
 
 /// A missing or taken seat is refused, and so is an impossible number of players.
