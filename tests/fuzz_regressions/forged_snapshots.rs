@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::math::Fx;
+use lockstep2d::math::{Angle, Fx};
 use lockstep2d::world::World;
 
 use super::weightless;
@@ -60,6 +60,47 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();
     assert!(refusal.ends_with("settled with a velocity"), "{refusal}");
+    assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
+}
+
+#[test]
+fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
+    // Without caches, the body would be active in the next tick only after it has reached its target.
+    let mut world = weightless();
+    let body = world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
+    world.move_to(body, (fx!(4.25), fx!(0)), Angle::ZERO).unwrap();
+    let mut settings = *world.body(body).unwrap().settings();
+    settings.locks.x = true;
+    world.set_body(body, &settings).unwrap();
+    let settle = |bytes: &mut Vec<u8>| {
+        let place = fx!(3.25).to_bits().to_le_bytes();
+        let target = bytes.windows(8).rposition(|window| window == place).expect("the target is there");
+        // Before the target are its tag, that of the island, and the ticks at rest.
+        assert_eq!(bytes[target - 6..target], [0, 0, 0, 0, 0, 1]);
+        bytes[target - 6] = 1;
+    };
+    let refusal = World::from_bytes(&forged(&world, settle)).unwrap_err().to_string();
+    assert!(refusal.ends_with("settled with a target"), "{refusal}");
+    assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
+}
+
+#[test]
+fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
+    // It would overlap the marker of an unknown box, so that a pair of bodies that wake would be missed.
+    let mut world = weightless();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let body = world.spawn(&BodyDef::dynamic().position((fx!(3.25), fx!(7.5))), &[ball]).unwrap();
+    let fat = world.shape(world.shapes_of(body)[0]).unwrap().fat_aabb();
+    let widen = |bytes: &mut Vec<u8>| {
+        for corner in [fat.lower.x, fat.lower.y] {
+            overwrite(bytes, corner, Fx::MIN);
+        }
+        for corner in [fat.upper.x, fat.upper.y] {
+            overwrite(bytes, corner, Fx::MAX);
+        }
+    };
+    let refusal = World::from_bytes(&forged(&world, widen)).unwrap_err().to_string();
+    assert!(refusal.ends_with("a corner of its fat box is off the grid"), "{refusal}");
     assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
 }
 

@@ -1,10 +1,12 @@
 //! Minimal cases of findings of the fuzz targets (`fuzz/`).
 
+mod edge_of_the_world;
 mod forged_snapshots;
 
-use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_EXTENT_MAX};
+use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{BodyPose, Command, Config, World};
 use lockstep2d::{codec, fx};
@@ -38,16 +40,6 @@ fn an_outline_that_goes_round_twice_is_refused() {
     let twice = [(0, 0), (1, 0), (0, 1), (0, 0), (1, 0), (0, 1)];
     let twice = twice.map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&twice).is_err());
-}
-
-#[test]
-fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
-    // The centre of mass is clamped, although the body does not move.
-    let mut world = weightless();
-    let mass = MassSource::Given { mass: fx!(1), centre: Vec2::new(fx!(10), fx!(0)), gyration: fx!(1) };
-    let body = BodyDef::dynamic().position((WORLD_EXTENT_MAX, fx!(0))).mass(mass);
-    world.spawn(&body, &[ShapeDef::new(Geometry::circle(fx!(1)).unwrap())]).unwrap();
-    caches_decide_nothing(&mut world, 3);
 }
 
 #[test]
@@ -248,7 +240,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // Each command below searches all joints of the body.
+    // Each start visits all joints of the body.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
@@ -257,16 +249,21 @@ fn kinematic_bodies_that_start_to_move_are_work() {
     let bodies: Vec<_> = Sandbox::new(&setup).unwrap().world().bodies().map(|(id, _)| id).collect();
     let joint = JointDef::new(bodies[0], bodies[1], Revolute::new());
     setup.commands.push(Command::AddJointEach { joint, ends: vec![(bodies[0], bodies[1]); 10_000] });
-    let game = Sandbox::new(&setup).unwrap();
-    let (body, position, angle) = (bodies[0], Vec2::ZERO, Angle::ZERO);
-    let velocity = Vec2::new(fx!(1), fx!(0));
+    let idle = Sandbox::new(&setup).unwrap().work(&[Vec::new()]);
+    let (body, position, angle) = (bodies[0], Vec2::new(fx!(1), fx!(0)), Angle::ZERO);
+    let velocity =
+        |x| Command::SetVelocity { body, velocity: Vec2::new(x, fx!(0)), angular_velocity: fx!(0) };
     for command in [
-        Command::SetVelocity { body, velocity, angular_velocity: fx!(0) },
+        velocity(fx!(1)),
         Command::SetTransform { body, position, angle },
         Command::MoveTo { body, position, angle },
     ] {
-        let idle = game.work(&[Vec::new()]);
-        assert!(game.work(&[vec![command.clone(); 100]]) > idle + 1_000_000, "{command:?}");
+        let mut recording = Recording::<Sandbox>::start(&setup, 60).unwrap();
+        let commands = [command.clone(), velocity(fx!(0))];
+        recording.step(&[vec![commands; 100].concat()]).unwrap();
+        let limits = Limits { tick_work: idle + 1_000_000, ..Limits::default() };
+        let verdict = verify::<Sandbox>(&recording.finish().unwrap(), &limits);
+        assert_eq!(verdict.name(), "limit_exceeded", "{command:?}: {verdict}");
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
     SandboxSetup { config, commands }
 }
 
-fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
+pub(super) fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
     for tick in 0..ticks {
         recording.step(&[script(tick)]).expect("commands that can be recorded");

@@ -8,6 +8,7 @@
 
 mod builders;
 mod cost;
+mod uncounted;
 
 use std::time::Duration;
 

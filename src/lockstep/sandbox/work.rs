@@ -3,7 +3,7 @@
 //! All commands of a tick are charged before the first one is executed, but a command may refer to objects that an
 //! earlier one adds. Objects added in the tick therefore count as existing.
 
-use crate::body::{BodyId, BodyKind};
+use crate::body::BodyId;
 use crate::solver::SolverSettings;
 use crate::world::{AddedWork, Command, World};
 
@@ -74,22 +74,14 @@ impl<'a> Costs<'a> {
                 SHAPE_WORK + self.removal() + self.shapes_beside(shape)
             }
             Command::SetKind { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.removal(),
-            Command::SetBody { body, .. } | Command::SetMass { body, .. } => {
-                VISIT_WORK + self.shapes_of(*body)
-            }
-            // Visits the joints to wake the joined bodies. The world itself counts its search for overlaps.
-            Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.joints(),
-            Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if self.is_kinematic(*body) => {
-                1 + self.joints()
-            }
+            // The world itself counts its search for overlaps, and the joints whose bodies it wakes.
+            Command::SetBody { body, .. }
+            | Command::SetMass { body, .. }
+            | Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body),
             Command::Sleep { .. } | Command::SetGravity { .. } | Command::SetConfig { .. } => {
                 1 + self.everything()
             }
-            // The world charges for each shape in reach.
-            Command::Explode { .. } => VISIT_WORK,
-            Command::Wake { body } if self.world.body(*body).is_none_or(|body| !body.is_dynamic()) => {
-                1 + self.everything()
-            }
+            // The world counts each shape in reach of an explosion, and the joints and sleeping contacts of a body.
             _ => VISIT_WORK,
         }
     }
@@ -130,10 +122,6 @@ impl<'a> Costs<'a> {
     /// Work units of comparing the shapes of two bodies again after a change of their joint.
     fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
         bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
-    }
-
-    fn is_kinematic(&self, body: BodyId) -> bool {
-        self.world.body(body).is_none_or(|body| body.kind() == BodyKind::Kinematic)
     }
 }
 

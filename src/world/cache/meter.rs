@@ -1,5 +1,7 @@
 //! Work units: [`WorkMeter`] counts work whose amount is known only when it is done.
 
+use crate::collision::Contact;
+
 /// Number of pairs per body that are assumed to fit into full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
@@ -11,6 +13,9 @@ pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
 /// Additional work units of a pair without a cached separating axis: measured on a hundred octagons in one place.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
+
+/// Number of sleeping contacts that are visited in one work unit.
+const VISITED_PER_WORK: usize = 4;
 
 /// Counts work units against a budget. Work beyond the budget may be skipped: the caller that set the budget must
 /// discard the state of a world whose meter is exhausted. The meter is not part of the state.
@@ -36,6 +41,11 @@ impl WorkMeter {
     pub(crate) fn spend(&mut self, units: u64) -> bool {
         self.spent = self.spent.saturating_add(units);
         self.spent <= self.max
+    }
+
+    /// Counts a visit of all sleeping contacts.
+    pub(crate) fn spend_visit(&mut self, sleeping_contacts: &[Contact]) {
+        self.spend(u64::try_from(sleeping_contacts.len() / VISITED_PER_WORK).unwrap_or(u64::MAX));
     }
 
     pub(crate) fn is_exhausted(&self) -> bool {

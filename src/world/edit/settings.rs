@@ -84,6 +84,8 @@ impl World {
             *impulse = Speed::from_bits(bits).clamp(-IMPULSE_MAX, IMPULSE_MAX);
         };
         let state = &mut *self.state;
+        // The sandbox charges a command for active contacts and for joints, but not for sleeping contacts.
+        self.scratch.meter.spend(u64::try_from(state.sleeping_contacts.len()).unwrap_or(u64::MAX));
         for contact in state.contacts.iter_mut().chain(state.sleeping_contacts.iter_mut()) {
             for point in &mut contact.points {
                 convert(&mut point.normal);

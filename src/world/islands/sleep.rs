@@ -80,6 +80,7 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
 
 /// Moves contacts without an active body to the sleeping contacts, and drops their manifolds.
 fn put_contacts_to_sleep(state: &mut State, scratch: &mut Scratch) {
+    scratch.meter.spend_visit(&state.sleeping_contacts);
     let buffers = &mut scratch.pairs.buffers;
     buffers.sleeping_contacts.clear();
     let mut contacts = core::mem::take(&mut state.contacts);

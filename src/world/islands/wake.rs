@@ -83,6 +83,7 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
 
 /// Wakes the sleeping bodies that touch a body or that an area connects to it.
 pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    scratch.meter.spend_visit(&state.sleeping_contacts);
     let other_body = |contact: &Contact| {
         let (a, b) = contact.shapes;
         let (body_a, body_b) = (state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
@@ -98,7 +99,9 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
 
 /// Wakes the bodies that joints connect to a body, and restarts their counts of ticks at rest.
 pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) {
-    for joint in scratch.joint_links.of(state, id) {
+    let joints = scratch.joint_links.of(state, id);
+    scratch.meter.spend(u64::try_from(joints.len()).unwrap_or(u64::MAX));
+    for joint in joints {
         let (a, b) = state.joints.at(joint.slot()).def().bodies();
         for body in [a, b] {
             wake_body(state, scratch, body.slot());

@@ -6,12 +6,13 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crate::body::{
-    Body, BodyId, BodyKind, Handle, Pose, RestTicks, SHAPES_PER_BODY_MAX, SPEED_MAX, WORLD_EXTENT_MAX,
+    Body, BodyId, BodyKind, Handle, Pose, REACH_MAX, RestTicks, SHAPES_PER_BODY_MAX, SPEED_MAX,
+    WORLD_EXTENT_MAX,
 };
 use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
 use crate::world::World;
-use crate::world::derived::{fat_box, mass_of, offset_max};
+use crate::world::derived::{FAT_GRID_SHIFT, fat_box, mass_of, offset_max};
 use crate::world::state::State;
 
 /// A broken invariant.
@@ -94,8 +95,9 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     };
     // Edits keep the origin of a body within the world extent, and ticks keep its centre of mass there. The tolerance
     // covers the distance between the two.
-    let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
-    check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
+    let reach = Vec2::new(REACH_MAX * 8, REACH_MAX * 8);
+    let nearly_inside = |v: Vec2<Fx>| inside(v.max(-v) - reach);
+    check(nearly_inside(body.centre), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;
     let slow = [body.velocity.x, body.velocity.y, body.spin].iter().all(|v| speed.contains(v));
     check(slow, || at("faster than the solver allows"))?;
@@ -116,12 +118,14 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     // mark would skip that tick.
     let rests = body.kind == BodyKind::Kinematic && body.rest_ticks.has_settled();
     check(!(rests && body.is_moving()), || at("settled with a velocity"))?;
+    check(!(rests && body.target.is_some()), || at("settled with a target"))?;
     let name = body.name().map_or(Ok(()), |name| name.validate());
     name.map_err(|error| Violation { what: at(&format!("{error}")) })?;
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("a velocity along a locked axis"))?;
-    let reachable = |target: &Pose| body.kind == BodyKind::Kinematic && inside(target.centre);
+    // Along a locked axis, the target is the centre.
+    let reachable = |target: &Pose| body.kind == BodyKind::Kinematic && nearly_inside(target.centre);
     check(body.target.as_deref().is_none_or(reachable), || {
         at("a target outside the world or of a body that is not kinematic")
     })?;
@@ -149,6 +153,10 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
         valid.map_err(|error| Violation { what: format!("shape {id}: {error}") })?;
         check(shape.fat.is_valid(), || {
             format!("shape {id}: the upper corner of its fat box is below the lower one")
+        })?;
+        // The grid excludes a box that covers all numbers, which would overlap `Aabb::NOWHERE`.
+        check(shape.fat == shape.fat.rounded_out(FAT_GRID_SHIFT), || {
+            format!("shape {id}: a corner of its fat box is off the grid")
         })?;
         let expected = || fat_box(&shape.def, body, &state.config);
         check(body.kind() != BodyKind::Fixed || shape.fat == expected(), || {

@@ -34,6 +34,7 @@ fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     if state.sleeping_contacts.is_empty() || !pairs.changes.affects_sleeping_contacts() {
         return;
     }
+    scratch.meter.spend_visit(&state.sleeping_contacts);
     let mut sleeping_contacts = core::mem::take(&mut state.sleeping_contacts);
     sleeping_contacts.retain(|contact| {
         let (a, b) = contact.shapes;

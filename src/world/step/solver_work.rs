@@ -7,12 +7,13 @@ use crate::world::state::State;
 /// the bias pass and for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
-/// Number of active and sleeping contacts.
+/// Number of active contacts.
 pub(super) fn pairs(state: &State) -> u64 {
-    count(state.contacts.len() + state.sleeping_contacts.len())
+    count(state.contacts.len())
 }
 
-/// Counts the work of new pairs, and of the joints that are solved in blocks. Returns whether the budget covers it.
+/// Counts the work of new and woken pairs, and of the joints that are solved in blocks. Returns whether the budget
+/// covers it.
 pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> bool {
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));

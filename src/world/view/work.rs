@@ -21,7 +21,8 @@ impl World {
     ///
     /// The bound is the number of bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4
     /// for each pair and 8 for the tick. Each pair beyond 32 per body counts as 65 when it is solved. The bound
-    /// includes finding as many new pairs as the world allows, but not solving them, which is counted within the tick.
+    /// includes finding as many new pairs as the world allows. Solving new pairs and the pairs of bodies that wake is
+    /// counted within the tick.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -53,9 +54,9 @@ impl World {
         [solved, found, narrow_phase].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, new pairs,
-    /// joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may be skipped, so that the state
-    /// may be wrong from then on.
+    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, new and
+    /// woken pairs, joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may be skipped, so
+    /// that the state may be wrong from then on.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }

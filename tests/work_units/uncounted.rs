@@ -1,0 +1,81 @@
+//! Edits whose cost depends on joints or on contacts of sleeping bodies. The commands of a tick are charged before the
+//! first one is executed, so that the world has to count these visits.
+
+use lockstep2d::body::{BodyDef, BodyKind, MassSource};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::replay::{Limits, verify};
+use lockstep2d::solver::{JointDef, SolverSettings, Weld};
+use lockstep2d::world::{Command, Config};
+
+use super::builders::{body, octagon, spawn, square, still};
+use super::cost::{Case, record, setup, too_expensive};
+
+fn with_rounds(sub_steps: u32, iterations: u32) -> Config {
+    let solver = SolverSettings { sub_steps, iterations, ..SolverSettings::default() };
+    Config { solver, ..still() }
+}
+
+/// Repeats commands on the first of two bodies with many joints.
+fn beside_joints(name: &str, first: &[Command], repeated: &[Command]) -> Option<String> {
+    let weld = JointDef { enabled: false, ..JointDef::new(body(0), body(1), Weld::rigid()) };
+    let case = |count: i64| -> Case<'_> {
+        let count = usize::try_from(count).expect("a number");
+        let script = move |_| [first.to_vec(), vec![repeated.to_vec(); count].concat()].concat();
+        let bare = || spawn(BodyDef::dynamic(), Vec::new());
+        let joints = Command::AddJointEach { joint: weld, ends: vec![(body(0), body(1)); 20_000] };
+        (setup(vec![bare(), bare(), joints], with_rounds(1, 1)), 1, Box::new(script))
+    };
+    too_expensive(name, 500, case)
+}
+
+#[test]
+fn edits_of_a_body_with_many_joints() {
+    let body = body(0);
+    let mass = |mass| Command::SetMass { body, mass };
+    let given = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) };
+    let kinematic = [Command::SetKind { body, kind: BodyKind::Kinematic }];
+    let velocity =
+        |x: Fx| Command::SetVelocity { body, velocity: Vec2::new(x, Fx::ZERO), angular_velocity: Fx::ZERO };
+    let there = Command::MoveTo { body, position: Vec2::new(fx!(1), fx!(0)), angle: Angle::ZERO };
+    let wrong = [
+        beside_joints("SetMass", &[], &[mass(given), mass(MassSource::Shapes)]),
+        beside_joints("SetVelocity", &kinematic, &[velocity(fx!(1)), velocity(fx!(0))]),
+        beside_joints("MoveTo", &kinematic, &[there, velocity(fx!(0))]),
+        beside_joints("Wake", &kinematic, &[Command::Wake { body }]),
+    ];
+    assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
+}
+
+/// Two bodies with `count` shapes each on one spot, which fall asleep in the second tick.
+fn sleepers(config: Config, count: i64, third_tick: Vec<Command>) -> Case<'static> {
+    let count = usize::try_from(count).expect("a number");
+    let crowd = |shape| spawn(BodyDef::dynamic(), vec![shape; count]);
+    let script = move |tick| match tick {
+        0 => Vec::new(),
+        1 => vec![Command::Sleep { body: body(0) }],
+        _ => third_tick.clone(),
+    };
+    (setup(vec![crowd(square(fx!(0.5))), crowd(octagon())], config), 3, Box::new(script))
+}
+
+#[test]
+fn settings_beside_sleeping_contacts() {
+    let set = |sub_steps| Command::SetConfig { config: with_rounds(sub_steps, 1) };
+    // The bodies fall asleep again, so that the tick does not solve their contacts.
+    let mut commands: Vec<_> = [set(2), set(1)].into_iter().cycle().take(200).collect();
+    commands.push(Command::Sleep { body: body(0) });
+    let (setup, ticks, script) = sleepers(with_rounds(1, 1), 100, commands);
+    // Each change of the settings converts the impulses of 10 000 contacts.
+    let limits = Limits { tick_work: 200 * 10_000, ..Limits::default() };
+    let verdict = verify::<Sandbox>(&record(&setup, ticks, &script), &limits);
+    assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
+}
+
+#[test]
+fn solving_of_woken_pairs() {
+    let set = || vec![Command::SetConfig { config: with_rounds(16, 16) }];
+    let wrong = too_expensive("woken pairs", 140, |count| sleepers(with_rounds(1, 1), count, set()));
+    assert!(wrong.is_none(), "{wrong:#?}");
+}
