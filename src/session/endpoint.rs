@@ -230,12 +230,15 @@ impl Endpoint {
     }
 
     /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress;
-    /// the new one has another incarnation and the same key.
+    /// the new one has another incarnation, and the same key, role, delay bounds and number of guessed ticks.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
+        // The contact may be in another match. Otherwise the peers are found again through it.
+        (self.routes, self.contacts, self.guests) = Default::default();
         // Each attempt has another nonce, so that the contact begins anew as well.
         self.attempts = self.attempts.wrapping_add(1);
-        if self.session().is_some() {
+        if let Phase::InMatch(session) = &self.phase {
+            (self.role, self.config) = (session.role, session.config.clone());
             // Others have rows and inputs of the discarded session, which the new session does not continue.
             let [a, b, c, d, ..] = self.secret.hash(&self.attempts.to_le_bytes()).to_le_bytes();
             self.me = PeerId(u32::from_le_bytes([a, b, c, d]));
@@ -295,6 +298,10 @@ impl Endpoint {
         self.packets.push_back((to, bytes));
     }
 
+    fn hello(&mut self, to: Address, nonce: u64, cookie: u64) {
+        self.send(to, &JoinPacket::Hello { nonce, key: self.key, cookie, offer: self.offer.clone() });
+    }
+
     /// Whether a joining peer waits for a state from [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
@@ -316,14 +323,11 @@ impl Endpoint {
     /// Advances to the time `now` in microseconds: sends packets that are due and handles timeouts.
     pub fn update(&mut self, now: u64) {
         match &mut self.phase {
-            Phase::Asking { nonce, cookie, next_at } => {
-                if now >= *next_at {
-                    *next_at = now + HELLO_INTERVAL;
-                    let (nonce, cookie) = (*nonce, *cookie);
-                    let hello = JoinPacket::Hello { nonce, key: self.key, cookie, offer: self.offer.clone() };
-                    if let Some(contact) = self.contact {
-                        self.send(contact, &hello);
-                    }
+            Phase::Asking { nonce, cookie, next_at } if now >= *next_at => {
+                *next_at = now + HELLO_INTERVAL;
+                let (nonce, cookie) = (*nonce, *cookie);
+                if let Some(contact) = self.contact {
+                    self.hello(contact, nonce, cookie);
                 }
             }
             Phase::Downloading(download) => {
@@ -344,7 +348,7 @@ impl Endpoint {
                     self.serve(now);
                 }
             }
-            Phase::Refused => {}
+            Phase::Asking { .. } | Phase::Refused => {}
         }
         while self.packets.len() > PACKETS_MAX {
             self.packets.pop_front();
@@ -355,12 +359,9 @@ impl Endpoint {
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();
-        let (secret, me) = (self.secret, self.me);
-        let nonce = |address: &Address| token(secret, me, address).wrapping_add(now);
+        let nonce = |address: &Address| token(self.secret, self.me, address).wrapping_add(now);
         if let Some(asked) = self.contacts.update(now, is_silent, nonce) {
-            let (nonce, cookie) = (asked.nonce, asked.cookie);
-            let hello = JoinPacket::Hello { nonce, key: self.key, cookie, offer: self.offer.clone() };
-            self.send(asked.address, &hello);
+            self.hello(asked.address, asked.nonce, asked.cookie);
         }
     }
 
@@ -380,9 +381,8 @@ impl Endpoint {
             let Phase::InMatch(session) = &self.phase else { return };
             self.routes.retain(|id| session.link(id).is_some());
             let addresses = self.routes.known(ADDRESS_LIST_MAX, |id| session.serves(id));
-            let all = self.routes.known(usize::MAX, |id| session.serves(id));
-            for (_, address) in &all {
-                self.send(*address, &JoinPacket::AddressList { addresses: addresses.clone() });
+            for (_, address) in self.routes.known(usize::MAX, |id| session.serves(id)) {
+                self.send(address, &JoinPacket::AddressList { addresses: addresses.clone() });
             }
         }
         self.flush();

@@ -101,8 +101,7 @@ impl Endpoint {
                 if self.routes.address(sender) == Some(from) {
                     for (id, address) in addresses.into_iter().filter(|(id, _)| *id != self.me) {
                         self.contacts.note(id, address);
-                        let unknown = self.routes.address(id).is_none();
-                        if unknown && self.knows(id) {
+                        if self.routes.is_lost(id, now) && self.knows(id) {
                             self.routes.suggest(id, address);
                         }
                     }

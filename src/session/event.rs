@@ -31,7 +31,7 @@ pub enum Status {
     Paused,
     /// The others continue without this peer. A player requests a seat again.
     Dropped,
-    /// The others removed this peer for good.
+    /// The others removed this peer for good, or refuse it a seat because they removed its [`Key`](super::Key).
     Kicked,
     /// Announces its departure.
     Leaving,

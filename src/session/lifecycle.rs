@@ -16,6 +16,7 @@ pub(super) struct Lifecycle {
     since: Option<u64>,
     /// Whether this peer lost its vote against its will.
     dropped: bool,
+    /// Whether the tie-holder or a quorum votes to kick this peer, or did so when it lost its vote.
     kicked: bool,
     left: bool,
     /// The peer that play waits for, as last reported.
@@ -59,12 +60,6 @@ impl Session {
                 self.hurry();
             }
         } else if was {
-            self.lifecycle.kicked = self
-                .peers
-                .list
-                .iter()
-                .filter_map(|remote| remote.row.as_ref())
-                .any(|row| row.wants.removals.contains(&Removal::Kick(self.key)));
             self.lifecycle.left = self.wants.leave;
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
@@ -83,6 +78,10 @@ impl Session {
     }
 
     pub(super) fn update_wants(&mut self) {
+        let is_kicked = self.is_voted(|removal| *removal == Removal::Kick(self.key));
+        // The votes in a new view arrive later than the view.
+        let is_unknown = !self.all_voters(|_| true);
+        self.lifecycle.kicked = is_kicked || self.lifecycle.kicked && (self.lifecycle.dropped || is_unknown);
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
         let within = Tick::from(self.config.seat_within);
         let caught_up = lead.is_some_and(|lead| self.play.played.saturating_add(within) >= lead);
@@ -151,11 +150,12 @@ impl Session {
             let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
             return if waited { Status::Closed } else { Status::Leaving };
         }
+        let may_want = self.lifecycle.dropped || self.role != Role::Spectator;
         match (votes, self.role) {
             (true, _) if !self.view.begun => Status::Waiting,
             (true, _) if !self.is_connected() => Status::Paused,
             (true, _) => Status::Playing,
-            (false, _) if self.lifecycle.kicked => Status::Kicked,
+            (false, _) if self.lifecycle.kicked && may_want => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
             (false, _) if !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,

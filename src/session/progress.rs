@@ -1,9 +1,10 @@
 //! Complete, acknowledged and final ticks.
 //!
 //! A tick is *complete* when this peer has all its inputs. A tick in which no peer plays is complete if a peer will
-//! play later. Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete
-//! tick is *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's
-//! row in this view states it as final. A change of the view may revoke complete ticks, but never final ones.
+//! play later, and also if no change of the view can add a player: before the cut, and once the end is decided.
+//! Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete tick is
+//! *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's row in
+//! this view states it as final. A change of the view may revoke complete ticks, but never final ones.
 
 use alloc::vec::Vec;
 
@@ -66,18 +67,22 @@ impl Session {
             let tick = self.progress.complete;
             // Up to the next start or end of a span, the same spans cover each tick.
             let mut limit = self.view.stop();
-            let mut somebody = false;
+            let mut goes_on = self.view.end.is_some();
             for &index in &self.progress.live {
                 let Some(span) = self.view.spans.get(index) else { continue };
                 if span.contains(tick) {
-                    somebody = true;
+                    goes_on = true;
                     limit = limit.min(span.until).min(self.log.next(index));
                 } else if span.from > tick && span.from < span.until {
-                    somebody |= span.is_open();
+                    goes_on |= span.is_open();
                     limit = limit.min(span.from);
                 }
             }
-            if !somebody || limit <= tick || limit == NEVER {
+            if !goes_on {
+                // Joining peers play from the next cut on.
+                limit = limit.min(self.view.cut);
+            }
+            if limit <= tick || limit == NEVER {
                 return;
             }
             self.progress.complete = limit;

@@ -160,13 +160,14 @@ impl Session {
 
     /// Whether the tie-holder or a quorum votes to remove a peer.
     pub(super) fn is_removed(&self, id: PeerId, key: Key) -> bool {
+        self.is_voted(|removal| [Removal::Without(id), Removal::Kick(key)].contains(removal))
+    }
+
+    /// Whether the tie-holder or a quorum votes for such a removal.
+    pub(super) fn is_voted(&self, is_meant: impl Fn(&Removal) -> bool) -> bool {
         let mut set = 0;
         for (index, remote, row) in self.peers.rows(self.view.number) {
-            let votes = row.wants.removals.iter().any(|removal| match *removal {
-                Removal::Without(other) => other == id,
-                Removal::Kick(other) => other == key,
-            });
-            if votes {
+            if row.wants.removals.iter().any(&is_meant) {
                 set |= bit(index);
                 if remote.id == self.view.tie_holder {
                     return true;

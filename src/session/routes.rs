@@ -60,6 +60,12 @@ impl Routes {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
 
+    /// Whether no address of a peer is known, or nothing has arrived from it for [`KEPT`].
+    pub(super) fn is_lost(&self, id: PeerId, now: u64) -> bool {
+        let heard = |route: &Route| route.address.is_some() && now < route.heard_at.saturating_add(KEPT);
+        !self.list.iter().any(|route| route.id == id && heard(route))
+    }
+
     /// Notes that an address has been proven to belong to a peer.
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };

@@ -1,9 +1,15 @@
 //! Peers that have gone leave no traffic and take no room.
 
-use lockstep2d::session::{Role, Status};
+use std::cmp::Reverse;
 
-use super::net::{Net, address};
-use super::sim::{MS, S, id};
+use lockstep2d::session::{Endpoint, Identity, Role, Session, Status};
+
+use super::net::{Net, address, config, identity};
+use super::sim::{MS, S, id, key};
+
+fn session(net: &mut Net, index: usize) -> &mut Session {
+    net.nodes[index].endpoint.session_mut().expect("valid")
+}
 
 #[test]
 fn nothing_is_sent_to_a_peer_that_has_gone() {
@@ -60,12 +66,14 @@ fn a_match_that_many_have_left_admits_more() {
     let newcomer = net.join(Role::Player { seats: 1 }, 1);
     net.run(net.now + 3 * S);
     net.assert_all_play();
-    let session = |net: &Net, at: usize| net.nodes[at].endpoint.session().expect("valid").clone();
-    assert_eq!(session(&net, newcomer).seats(), 0b10);
-    let sent = |net: &Net| session(net, 0).link(id(newcomer)).expect("valid").packets_sent;
-    let before = sent(&net);
+    assert_eq!(session(&mut net, newcomer).seats(), 0b10);
+    let sent = |net: &mut Net| session(net, 0).link(id(newcomer)).expect("valid").packets_sent;
+    let before = sent(&mut net);
     net.run(net.now + S);
-    assert!(sent(&net) >= before + 55, "those who have gone do not slow down the packets of a small match");
+    assert!(
+        sent(&mut net) >= before + 55,
+        "those who have gone do not slow down the packets of a small match"
+    );
 }
 
 /// The contact knows the spectator and its old session.
@@ -102,6 +110,97 @@ fn a_dropped_player_that_asks_again_is_back() {
     net.run(20 * S);
     net.assert_all_play();
     assert_eq!(net.nodes[2].endpoint.session().expect("valid").seats().count_ones(), 1);
+}
+
+/// A spectator became a player with other bounds of the delay.
+#[test]
+fn a_peer_that_asks_again_keeps_its_role_and_its_delay() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.host();
+    let player = net.join(Role::Spectator, 1);
+    net.run(3 * S);
+    session(&mut net, player).set_role(Role::Player { seats: 1 });
+    session(&mut net, player).set_delay(9, 12);
+    for until in [7 * S, 12 * S] {
+        net.run(until);
+        net.assert_all_play();
+        assert_eq!((session(&mut net, player).seats(), session(&mut net, player).delay()), (0b10, 9));
+        net.nodes[player].endpoint.ask(address(1));
+    }
+}
+
+/// The players of the first match have played for longer than those of the second one.
+fn two_matches(state_bytes: usize) -> Net {
+    let mut net = Net::new(20 * MS, 0, state_bytes);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(5 * S);
+    net.assert_all_play();
+    net.host();
+    net.run(6 * S);
+    net
+}
+
+/// The host of the first match still serves the player that has gone. Both matches have one tag.
+#[test]
+fn nothing_of_a_match_reaches_the_next_one() {
+    let mut net = two_matches(1000);
+    net.nodes[1].endpoint.ask(address(3));
+    for until in [7 * S, 9 * S, 14 * S] {
+        net.run(until);
+        assert!(net.nodes.iter().all(|node| !node.desynced), "{until}");
+    }
+    assert!(net.nodes[1].tick.abs_diff(net.nodes[2].tick) < 20);
+    assert_eq!((net.status(1), session(&mut net, 1).seats()), (Some(Status::Playing), 0b10));
+    assert!(session(&mut net, 1).link(id(0)).is_none());
+}
+
+/// Its contact changes to another match during the download.
+#[test]
+fn a_guest_gets_no_state_of_a_match_that_its_contact_has_left() {
+    let mut net = two_matches(4 << 20);
+    let guest = net.join(Role::Player { seats: 1 }, 2);
+    net.run(net.now + 500 * MS);
+    assert!(net.nodes[guest].endpoint.download().is_some_and(|(received, _)| received > 0));
+    net.nodes[1].endpoint.ask(address(3));
+    net.run(net.now + 15 * S);
+    assert!(session(&mut net, guest).view().voter(id(2)).is_some());
+    assert_eq!([1, 2, guest].map(|index| net.status(index)), [Some(Status::Playing); 3]);
+}
+
+#[test]
+fn a_peer_without_a_session_wants_no_state() {
+    let mut net = two_matches(1000);
+    net.join(Role::Player { seats: 1 }, 2);
+    net.run(net.now + 55 * MS);
+    // The hello with the cookie is on its way.
+    for Reverse((at, _, from, _, bytes)) in net.heap.iter().filter(|packet| packet.0.3 == 2) {
+        net.nodes[1].endpoint.receive(*at, address(*from), bytes);
+    }
+    assert!(net.nodes[1].endpoint.wants_state());
+    net.nodes[1].endpoint.ask(address(3));
+    assert!(!net.nodes[1].endpoint.wants_state());
+}
+
+/// The process of a kicked player is started again.
+#[test]
+fn a_key_that_is_kicked_gets_no_seat_and_knows_it() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(3 * S);
+    session(&mut net, 0).kick(key(1));
+    net.run(5 * S);
+    assert_eq!(net.status(1), Some(Status::Kicked));
+    let again = Identity { key: key(1), ..identity(5) };
+    let again = Endpoint::join(config(), again, Role::Player { seats: 1 }, address(1)).expect("valid");
+    let again = net.add(again);
+    net.run(8 * S);
+    assert_eq!([1, again].map(|index| net.status(index)), [Some(Status::Kicked); 2]);
+    // A spectator has no seat to lose.
+    session(&mut net, again).set_role(Role::Spectator);
+    net.run(9 * S);
+    assert_eq!(net.status(again), Some(Status::Watching));
 }
 
 #[test]

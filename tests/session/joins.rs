@@ -158,6 +158,22 @@ fn an_address_may_change() {
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
+/// A NAT gives a player another port, at which a peer hears the player only after it has sent a packet there.
+#[test]
+fn a_changed_address_is_known_from_others() {
+    let mut net = Net::new(30 * MS, 0, 1000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(2 * S);
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(5 * S);
+    net.nodes[1].address = 99;
+    net.shut = vec![(99, 3)];
+    net.run(9 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[2].endpoint.address(id(1)), Some(address(99)));
+}
+
 /// Two of three peers cannot reach each other directly.
 #[test]
 fn somebody_in_between_relays() {

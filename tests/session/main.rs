@@ -19,6 +19,7 @@ mod pace;
 mod sim;
 mod stories;
 mod storm;
+mod without_players;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -3,7 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use lockstep2d::session::{Address, Config, Endpoint, Identity, JoinEvent, Request, Role, Status, Tick};
+use lockstep2d::session::{
+    Address, Config, Endpoint, Event, Identity, JoinEvent, Request, Role, Status, Tick,
+};
 
 use super::game::{START, mix_inputs};
 use super::sim::{MS, Rng, S, Us, id, key};
@@ -41,6 +43,8 @@ pub(super) struct Net {
     /// Number of bytes received from each address.
     pub(super) received_from: [u64; 256],
     pub(super) blocked: Vec<(u8, u8)>,
+    /// Links that a NAT blocks until a packet is sent in the other direction.
+    pub(super) shut: Vec<(u8, u8)>,
 }
 
 pub(super) fn address(number: u8) -> Address {
@@ -72,6 +76,7 @@ impl Net {
             sent_to: [0; 256],
             received_from: [0; 256],
             blocked: Vec::new(),
+            shut: Vec::new(),
         }
     }
 
@@ -178,7 +183,7 @@ impl Net {
                 }
             }
             while let Some(event) = session.next_event() {
-                node.desynced |= matches!(event, lockstep2d::session::Event::Desync { .. });
+                node.desynced |= matches!(event, Event::Desync { .. } | Event::Conflict { .. });
             }
             if !due {
                 break;
@@ -191,7 +196,9 @@ impl Net {
         while let Some((to, bytes)) = self.nodes[index].endpoint.next_packet() {
             let (from, to) = (self.nodes[index].address, to.bytes()[3]);
             self.sent_to[to as usize] += bytes.len() as u64;
-            let lost = self.rng.percent(self.loss) || self.blocked.contains(&(from, to));
+            self.shut.retain(|link| *link != (to, from));
+            let closed = self.blocked.iter().chain(&self.shut).any(|link| *link == (from, to));
+            let lost = self.rng.percent(self.loss) || closed;
             if !lost {
                 self.post(from, to, bytes);
             }

@@ -120,6 +120,34 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
+/// The host votes during the outage, before or after the others go on.
+#[test]
+fn somebody_who_is_kicked_during_an_outage_knows_it_afterwards() {
+    for vote in [7 * S, 11 * S] {
+        let mut sim = players(3, link(30 * MS), |_| ());
+        pace(&mut sim, 1);
+        (0..2).for_each(|other| cut(&mut sim, other, 2, 12 * S));
+        sim.run(vote);
+        sim.peers[0].session.kick(key(2));
+        sim.run(16 * S);
+        assert_eq!((sim.failure.clone(), status(&sim, 2)), (None, Status::Kicked));
+    }
+}
+
+/// One vote of five, from a peer that is not the host.
+#[test]
+fn a_vote_without_a_quorum_keeps_nobody_out() {
+    let mut sim = players(5, link(30 * MS), |_| ());
+    pace(&mut sim, 1);
+    sim.peers[1].session.kick(key(4));
+    sim.run(7 * S);
+    (0..4).for_each(|other| cut(&mut sim, other, 4, 12 * S));
+    sim.run(11 * S);
+    assert_eq!(sim.newest_view().voters.len(), 4);
+    sim.run(16 * S);
+    assert_eq!((sim.failure.clone(), status(&sim, 4)), (None, Status::Playing));
+}
+
 /// Peer 0 is the `View::tie_holder` and could remove a peer alone. Other peers need a quorum of votes.
 #[test]
 fn two_votes_of_five_kick_nobody_and_three_do() {
