@@ -194,6 +194,14 @@ impl Vec2<Fx> {
         Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))
     }
 
+    /// A vector in the direction from this point to another: their difference, or half of it if it does not fit.
+    pub(crate) fn towards(self, to: Self) -> Self {
+        match (to.x.checked_sub(self.x), to.y.checked_sub(self.y)) {
+            (Some(x), Some(y)) => Vec2::new(x, y),
+            _ => Vec2::new((to.x >> 1) - (self.x >> 1), (to.y >> 1) - (self.y >> 1)),
+        }
+    }
+
     /// Converts to a 32-bit format, rounded to nearest, saturated.
     #[inline]
     #[must_use]

@@ -1,6 +1,6 @@
 //! Motors reach their speed within their limits of force.
 
-use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, Geometry, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Wheel};
@@ -129,4 +129,32 @@ fn a_stiff_joint_comes_to_rest() {
     // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's 6 cos angle, and that of
     // friction at most 0.5.
     assert!(fx!(0.01) < angle + fx!(0.05) && angle < fx!(0.05), "{angle} rad");
+}
+
+/// A limit of `Fx::MAX` in N m would turn a disc of 31 kt by only 0.014 rad/s².
+#[test]
+fn motors_without_a_limit_move_any_mass_at_once() {
+    let turning = |world: &World, id| world.joint_angular_velocity(id).expect("there");
+    let along = |world: &World, id| world.joint_velocity(id).expect("there").x;
+    let linear = Motor::new().linear((fx!(3), fx!(0)), Fx::MAX);
+    let cases: [(JointKind, fn(&World, JointId) -> Fx); 6] = [
+        (Revolute::new().motor(fx!(3), Fx::MAX).into(), turning),
+        (Wheel::new().motor(fx!(3), Fx::MAX).into(), turning),
+        (Motor::new().angular(fx!(3), Fx::MAX).into(), turning),
+        (Prismatic::new().motor(fx!(3), Fx::MAX).into(), along),
+        (Distance::new().motor(fx!(3), Fx::MAX).into(), along),
+        (linear.into(), along),
+    ];
+    for (kind, speed) in cases {
+        let mut world = World::default();
+        world.set_gravity(Vec2::ZERO).expect("valid");
+        let ground = world.spawn(&BodyDef::fixed().position((fx!(-5), fx!(0))), &[]).expect("valid");
+        let disc = ShapeDef::new(Geometry::circle(fx!(100)).expect("valid")).density(fx!(1000));
+        let disc = world.spawn(&BodyDef::dynamic(), &[disc]).expect("valid");
+        let place = if matches!(kind, JointKind::Distance(_)) { fx!(0) } else { fx!(5) };
+        let def = JointDef::new(ground, disc, kind).anchor_a((place, fx!(0)));
+        let joint = world.add_joint(&def).expect("valid");
+        world.step();
+        close(speed(&world, joint), fx!(3), fx!(0.03), &format!("{kind:?}"));
+    }
 }

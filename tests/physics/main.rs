@@ -3,6 +3,7 @@
 mod areas;
 mod assembly;
 mod assembly_energy;
+mod belts;
 mod capsule;
 mod chain;
 mod collisions;

@@ -8,6 +8,8 @@ mod far;
 mod impulses;
 mod joint_batches;
 mod joint_edits;
+mod joint_turns;
+mod largest;
 mod locks;
 mod lost_support;
 mod massless;

@@ -81,12 +81,12 @@ fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
 
 /// Outline of a shape as a hull. `room` provides storage if the outline is not a hull already.
 fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
-    let from_other = shape.centre - other.centre;
+    let centre = other.centre - shape.centre;
     *room = match &shape.outline {
         Outline::Polygon(hull) => return Some(hull),
         Outline::Circle { radius } => Some(Hull::point(*radius)),
-        Outline::Segment { a, b } => segment::near_hull(from_other + *a, from_other + *b),
-        Outline::Link(link) => segment::near_hull(from_other + link.a, from_other + link.b),
+        Outline::Segment { a, b } => segment::near_hull(*a, *b, centre),
+        Outline::Link(link) => segment::near_hull(link.a, link.b, centre),
     };
     room.as_ref()
 }

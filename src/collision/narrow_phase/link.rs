@@ -65,15 +65,15 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// Orients a link towards the point `place` in the other shape. `None` if it is far away or not solid from this
-    /// side.
-    pub(crate) fn new(link: &Link, place: Vec2<Fx>) -> Option<Self> {
-        let link = match (link.has_on_right(place), link.sides) {
+    /// Orients a link towards the point `place` in the other shape, relative to the centre of that shape. `None` if the
+    /// link is far away or not solid from this side.
+    pub(crate) fn new(link: &Link, centre: Vec2<Fx>, place: Vec2<Fx>) -> Option<Self> {
+        let link = match (link.has_on_right(centre + place), link.sides) {
             (true, _) => *link,
             (false, Sides::Both) => link.reversed(),
             (false, Sides::Right) => return None,
         };
-        let (p, q) = clipped_to_window(link.a, link.b)?;
+        let (p, q) = clipped_to_window(link.a, link.b, centre)?;
         let direction = link.directions.own?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
             // If the neighbour runs in exactly the opposite direction, the chain ends here.

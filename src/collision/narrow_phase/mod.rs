@@ -38,7 +38,7 @@ pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) 
 /// Whether shapes in two boxes may be at most `margin` metres apart.
 #[inline]
 pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
-    a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
+    a.expanded(widen(margin) + REJECT_SLACK).overlaps(b)
 }
 
 /// [`collide_near`] with an early reject by bounding boxes.
@@ -126,15 +126,13 @@ pub(crate) fn collide_near(
 /// A segment as a hull relative to the centre of the other shape.
 fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     let Outline::Segment { a, b } = segment.outline else { return None };
-    let from_other = segment.centre - other.centre;
-    segment::near_hull(from_other + a, from_other + b)
+    segment::near_hull(a, b, other.centre - segment.centre)
 }
 
 /// A link relative to the centre of the other shape, oriented towards a point in that shape.
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
-    let from_other = link.centre - other.centre;
-    Facing::new(&posed.translated(from_other), place)
+    Facing::new(&posed, other.centre - link.centre, place)
 }
 
 #[cfg(test)]

@@ -9,33 +9,40 @@ use crate::math::{Fx, Vec2, div_round, saturate_wide};
 /// enough that relative coordinates, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
-/// The part of a segment in the window. All positions are relative to the other shape's centre. `None` if the segment
-/// misses the window.
-pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
-    let direction = (b - a).normalized()?;
-    let (p, q) = clipped_to_window(a, b)?;
+/// The part of a segment in the window about the centre of the other shape, relative to that centre. `None` if the
+/// segment misses the window.
+pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>, centre: Vec2<Fx>) -> Option<Hull> {
+    let direction = a.towards(b).normalized()?;
+    let (p, q) = clipped_to_window(a, b, centre)?;
     Some(Hull::segment(p.narrow(), q.narrow(), direction))
 }
 
-pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-    clip(a, b, WINDOW)
+pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>, centre: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    clip(a, b, centre, WINDOW)
 }
 
-/// The part of a segment in a square about the origin.
-pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-    let (mut p, mut q) = (a, b);
+/// The part of a segment in a square, relative to the centre of the square. The ends may be so far from the centre that
+/// differences saturate.
+pub(in crate::collision) fn clip(
+    a: Vec2<Fx>,
+    b: Vec2<Fx>,
+    centre: Vec2<Fx>,
+    half_side: Fx,
+) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let is_inside = |v: Vec2<Fx>| v.x.unsigned_abs().max(v.y.unsigned_abs()) <= half_side.unsigned_abs();
-    if is_inside(a) && is_inside(b) {
-        return Some((a, b));
+    if is_inside(a - centre) && is_inside(b - centre) {
+        return Some((a - centre, b - centre));
     }
+    let (mut p, mut q) = (a, b);
     for sign in [1, -1] {
         for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
             (p, q) = clip_to_half_plane(p, q, |v| {
-                i128::from(axis(v).to_bits()) * sign - i128::from(half_side.to_bits())
+                let along = i128::from(axis(v).to_bits()) - i128::from(axis(centre).to_bits());
+                along * sign - i128::from(half_side.to_bits())
             })?;
         }
     }
-    Some((p, q))
+    Some((p - centre, q - centre))
 }
 
 /// The part of a segment where the linear function `outside` is not positive.
@@ -55,9 +62,10 @@ fn clip_to_half_plane(
 
 /// Zero of a linear function, with `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
-    // Differences within the world are below 2^63, so that the product has at most 127 bits.
+    // The longest line has 2^63.5 units, so that the product hardly saturates.
     let part = |p: Fx, q: Fx| {
-        let moved = div_round((i128::from(q.to_bits()) - i128::from(p.to_bits())) * at_p, at_p - at_q);
+        let way = i128::from(q.to_bits()) - i128::from(p.to_bits());
+        let moved = div_round(way.saturating_mul(at_p), at_p - at_q);
         Fx::from_bits(saturate_wide(i128::from(p.to_bits()) + moved))
     };
     Vec2::new(part(p.x, q.x), part(p.y, q.y))
@@ -72,7 +80,7 @@ mod tests {
     fn a_long_segment_is_cut_on_its_own_line() {
         let a = Vec2::new(fx!(-1000000000), fx!(-500000000));
         let b = Vec2::new(fx!(1000000000), fx!(500000000));
-        let hull = near_hull(a, b).unwrap();
+        let hull = near_hull(a, b, Vec2::ZERO).unwrap();
         let expected = [Vec2::new(-200, -100), Vec2::new(200, 100)]
             .map(|v| Vec2::new(Length::from_num(v.x), Length::from_num(v.y)));
         assert_eq!(hull.vertices(), expected);
@@ -80,8 +88,10 @@ mod tests {
 
     #[test]
     fn a_short_segment_is_kept_and_a_distant_one_dropped() {
-        let near = near_hull(Vec2::new(fx!(1), fx!(2)), Vec2::new(fx!(3), fx!(2))).unwrap();
+        let near = near_hull(Vec2::new(fx!(1), fx!(2)), Vec2::new(fx!(3), fx!(2)), Vec2::ZERO).unwrap();
         assert_eq!(near.vertices()[1].x, Length::from_num(3));
-        assert!(near_hull(Vec2::new(fx!(-900), fx!(201)), Vec2::new(fx!(900), fx!(201))).is_none());
+        assert!(
+            near_hull(Vec2::new(fx!(-900), fx!(201)), Vec2::new(fx!(900), fx!(201)), Vec2::ZERO).is_none()
+        );
     }
 }

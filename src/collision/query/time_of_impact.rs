@@ -235,7 +235,7 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
-            let (p, q) = clip(from_grid(p) - b, from_grid(q) - b, window)?;
+            let (p, q) = clip(from_grid(p), from_grid(q), b, window)?;
             Some(SupportShape::from_points([p + b, q + b], to_fx(a.radius)))
         }
         _ => Some(*a),

@@ -3,7 +3,7 @@
 use crate::body::Sides;
 use crate::math::{Fx, Orientation, Unit, Vec2, orientation};
 
-/// A link in world axes, relative to the centre of its own shape or of the other shape of a pair.
+/// A link in world axes, relative to the centre of its own shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) a: Vec2<Fx>,
@@ -26,17 +26,11 @@ impl Link {
     /// `before` is the far end of the neighbour at `a`, `after` that of the neighbour at `b`.
     pub(crate) fn new([a, b]: [Vec2<Fx>; 2], [before, after]: [Option<Vec2<Fx>>; 2], sides: Sides) -> Self {
         let directions = Directions {
-            before: before.and_then(|before| (a - before).normalized()),
-            own: (b - a).normalized(),
-            after: after.and_then(|after| (after - b).normalized()),
+            before: before.and_then(|before| before.towards(a).normalized()),
+            own: a.towards(b).normalized(),
+            after: after.and_then(|after| b.towards(after).normalized()),
         };
         Link { a, b, before, after, sides, directions }
-    }
-
-    pub(crate) fn translated(self, by: Vec2<Fx>) -> Self {
-        let Link { a, b, before, after, .. } = self;
-        let [before, after] = [before, after].map(|point| point.map(|point| by + point));
-        Link { a: by + a, b: by + b, before, after, ..self }
     }
 
     pub(crate) fn reversed(self) -> Self {
@@ -59,7 +53,7 @@ impl Link {
     pub(crate) fn has_on_right(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, .. } = *self;
         let own = right_of(a, b, place);
-        let direction = b - a;
+        let direction = a.towards(b);
         // Only the signs matter, and a saturated product keeps its sign.
         let (corner, neighbour) = if (place - a).dot(direction) < 0 {
             (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
@@ -74,7 +68,7 @@ impl Link {
             return own || other;
         }
         // The line of the neighbour counts only between the perpendiculars at the neighbour's ends.
-        let stretch = to - from;
+        let stretch = from.towards(to);
         let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
         own && (other || !beside)
     }

@@ -17,7 +17,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         policy.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
-    /// Changes the velocities by impulses `d`, which must be below 512 m/s, so that no sum overflows. `SHIFT` is the
+    /// Changes the velocities by impulses `d`, which must be at most 512 m/s, so that no sum overflows. `SHIFT` is the
     /// number of additional fraction bits of a gain times an impulse.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {

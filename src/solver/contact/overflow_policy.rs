@@ -160,9 +160,9 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     mut d: L::Int,
     faults: &mut Faults,
 ) {
-    let limit = L::splat(HALF - 1);
     for _ in 0..3 {
-        let step = clamp::<L, N>(d, limit);
+        // `Saturating::apply` applies the least of these at once as well.
+        let step = L::max(L::min(d, L::splat(HALF - 1)), L::splat(-HALF));
         pair.change::<UNIT>(row, step);
         pair.keep_in_range(faults);
         d = L::sub(d, step);

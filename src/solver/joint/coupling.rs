@@ -129,6 +129,16 @@ impl JointDef {
 }
 
 impl Joint {
+    /// The torque on B, from the opposite of that on A. The two are equal, except in a gear without a pitch point.
+    pub(super) fn torque_on_b(&self, opposite: Fx, gap: Vec2<Fx>) -> Fx {
+        match self.def.kind {
+            JointKind::Gear(gear) if pitch_per_tooth(&gear, gap).is_none() => {
+                opposite.saturating_mul_int((-gear.teeth_b).into()).saturating_div_int(gear.teeth_a.into())
+            }
+            _ => opposite,
+        }
+    }
+
     /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. Without a pitch point
     /// it is in radians, with 2 pi per tooth. `None` for other kinds.
     pub(crate) fn coupling_error(&self, a: &Body, b: &Body) -> Option<Fx> {

@@ -7,7 +7,7 @@ use super::options::{Drive, JointLimit, Soft, Spring};
 use super::point::{JointPoint, PointTask};
 use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
-use crate::math::{Fx, Speed, Vec2, fx_div};
+use crate::math::{Fx, Vec2, fx_div};
 
 /// Slots of impulses in the state of a joint. A point uses two slots.
 pub(super) mod slot {
@@ -60,9 +60,7 @@ impl Parts<'_> {
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
-            let unlimited = force == JointLimit { lower: Fx::MIN, upper: Fx::MAX };
-            let impulse = |force| if unlimited { force } else { self.impulse(force) };
-            let (lower, upper) = (impulse(force.lower), impulse(force.upper));
+            let (lower, upper) = (self.impulse(force.lower), self.impulse(force.upper));
             self.row(slot::SPRING, direction, RowTask::Spring { softness, target, lower, upper });
         }
     }
@@ -102,8 +100,7 @@ impl Parts<'_> {
 
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
-        let max =
-            if max_force == Fx::MAX { Speed::MAX } else { crate::math::narrow(self.impulse(max_force)) };
+        let max = crate::math::narrow(self.impulse(max_force));
         self.point(slot, PointTask::Spring { softness, max });
     }
 
@@ -127,7 +124,11 @@ impl Parts<'_> {
 }
 
 /// The impulse of a force in a sub-step times the sum of the inverse masses, in m/s, or in m²/s for a torque.
+/// [`Fx::MAX`] and [`Fx::MIN`] are unlimited.
 pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
+    if force == Fx::MAX || force == Fx::MIN {
+        return force;
+    }
     let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
     let per_second = over(masses.0).saturating_add(over(masses.1));
     fx_div(per_second, Fx::from_num(rate)).unwrap_or(Fx::ZERO)

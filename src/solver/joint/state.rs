@@ -59,13 +59,18 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same.
-    pub(crate) fn redefine(&mut self, def: JointDef) {
+    /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same. Whole turns are
+    /// kept if its kind stays the same, except for a rack that fits better without them, as one from
+    /// [`JointDef::fitted`] does.
+    pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {
             self.impulses = JointImpulses::default();
         }
         *self.def = def;
+        if !same_kind || Joint::new(def).coupling_error(a, b) < self.coupling_error(a, b) {
+            self.turns = 0;
+        }
     }
 
     /// Clears the impulses of a joint between two bodies that are not dynamic.

@@ -154,9 +154,8 @@ impl ShapeMotion {
     /// Half the sum of the sides of the bounds in metres, saturated.
     #[inline]
     pub(crate) fn extent(&self) -> Length {
-        // Wraps around only for fixed shapes whose sides add up to 2^31 m or more.
-        let size = self.bounds.upper.wrapping_sub(self.bounds.lower);
-        narrow(size.x.wrapping_add(size.y) >> 1)
+        let size = self.bounds.upper - self.bounds.lower;
+        narrow(size.x.saturating_add(size.y) >> 1)
     }
 
     /// Upper bound in metres of the approach of two points within the tick.

@@ -180,7 +180,7 @@ impl World {
         let by = position - body.position();
         body.drop_target();
         body.set_transform(position, angle);
-        if by.x.abs().max(by.y.abs()) >= KEPT_MOVE_MAX {
+        if by.x.saturating_abs().max(by.y.saturating_abs()) >= KEPT_MOVE_MAX {
             self.end_manifolds(id.slot());
         }
         self.refit_body(id.slot());

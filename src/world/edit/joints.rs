@@ -10,6 +10,7 @@ use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{JointDef, JointFrame, JointKind, JointLimit};
 use crate::world::World;
 use crate::world::islands::{joint_retuned, joints_changed};
+use crate::world::state::State;
 
 impl World {
     /// The definition of a joint with both anchors at a world point, in metres, and the angle 0 at the current poses.
@@ -76,7 +77,8 @@ impl World {
     }
 
     /// Replaces the definition of a joint except for its bodies: change a copy of [`crate::solver::Joint::def`]. The
-    /// joint keeps its impulses if its kind stays the same and it is enabled. A different definition wakes its bodies.
+    /// joint keeps its impulses if its kind stays the same and it is enabled. Its angle keeps whole turns if its kind
+    /// stays the same; a rack loses them if it fits better without. A different definition wakes its bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the bodies are different, a value is out of range, or a lower limit is
@@ -96,8 +98,9 @@ impl World {
         }
         let changes_collisions =
             (joint.def.enabled, joint.def.collide_connected) != (def.enabled, def.collide_connected);
-        if let Some(joint) = self.state.joints.get_mut(id) {
-            joint.redefine(*def);
+        let State { bodies, joints, .. } = &mut *self.state;
+        if let (Some(joint), Some(a), Some(b)) = (joints.get_mut(id), bodies.get(a), bodies.get(b)) {
+            joint.redefine(*def, a, b);
         }
         if changes_collisions {
             joints_changed(&mut self.state, &mut self.scratch, Vec::from([a, b]));

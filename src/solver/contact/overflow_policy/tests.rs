@@ -159,3 +159,56 @@ fn unchecked_contacts_end_as_checked_ones() {
     }
     assert!(unchecked > 2000 && wild > 2000, "{unchecked} trials were within the bounds and {wild} were not");
 }
+
+/// Impulses `d` on a row, from rest or from the limit of speeds.
+struct Applying {
+    row: Row<WIDTH>,
+    d: Ints<WIDTH>,
+    start: i32,
+    end: [Ints<WIDTH>; 6],
+}
+
+impl Kernel<WIDTH> for &mut Applying {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        let start = || L::splat(self.start);
+        let body = || VelocityW { x: start(), y: start(), turn: start() };
+        let (mut pair, mut faults) = (BodyPairW::<L, WIDTH> { a: body(), b: body() }, 0);
+        Saturating::<L, WIDTH>::new(&mut faults).apply(&mut pair, &self.row, L::load(&self.d));
+        let BodyPairW { a, b } = pair;
+        for (end, speed) in self.end.iter_mut().zip([a.x, a.y, a.turn, b.x, b.y, b.turn]) {
+            L::store(speed, end);
+        }
+    }
+}
+
+/// Batches of another width, or with other contacts, apply an impulse in one step or in several.
+#[test]
+fn an_impulse_changes_velocities_alike_beside_any_other() {
+    let mut rng = Rng::new(31);
+    for round in 0..300 {
+        let mut gains = || {
+            Ints(core::array::from_fn(|_| {
+                // With equal masses, an impulse changes both velocities by exactly one half.
+                let half = 1 << 29;
+                [half, -half, (rng.next_u32() >> 2).cast_signed() - half][rng.below(3) as usize]
+            }))
+        };
+        let (a, b) = ([(); 3].map(|()| gains()), [(); 3].map(|()| gains()));
+        let row = Row { a, b, ..Row::NONE };
+        let start = [0, Speed::lit("300").to_bits(), Speed::lit("-300").to_bits()][round % 3];
+        for first in [-HALF, 1 - HALF, HALF - 1, -1, 1, 12_345_678 - HALF] {
+            for backend in Backend::available() {
+                let end = |second: i32| {
+                    let d = Ints(core::array::from_fn(|lane| if lane == 0 { first } else { second }));
+                    let mut applying = Applying { row: row.clone(), d, start, end: [Ints::ZERO; 6] };
+                    Machine::new(backend).expect("available").run_wide(&mut applying);
+                    applying.end.map(|speeds| speeds.0[0])
+                };
+                for second in [HALF, -HALF - 1, i32::MIN, i32::MAX] {
+                    assert_eq!(end(second), end(0), "{backend:?}: {first} beside {second}");
+                }
+            }
+        }
+    }
+}

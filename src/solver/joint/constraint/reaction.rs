@@ -67,10 +67,9 @@ impl JointSet {
         let is_lighter = a.has_mass() && (!b.has_mass() || a.mass() < b.mass());
         let (force, _) = measured(is_lighter);
         let torque = match (turns(a), turns(b)) {
-            (true, true) => measured(is_lighter).1,
-            (true, false) => measured(true).1,
-            (false, true) => measured(false).1,
             (false, false) => Fx::ZERO,
+            (true, b_turns) if is_lighter || !b_turns => joint.torque_on_b(measured(true).1, pose.gap),
+            _ => measured(false).1,
         };
         (force, torque)
     }
