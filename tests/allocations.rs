@@ -2,8 +2,9 @@
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Fx;
+use lockstep2d::replay::{Limits, Recording, Timeline, TimelineOptions};
 use lockstep2d::solver::{JointDef, Revolute, Threshold};
 use lockstep2d::world::{Config, Snapshot, World};
 use lockstep2d_scenes::Scene;
@@ -142,4 +143,29 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
 fn a_drum_allocates_only_for_new_records() {
     let growths = allocations(&mut world_of("drum"), 120, 240);
     assert!(growths < 30, "{growths} allocations in 240 ticks");
+}
+
+/// A file may have a keyframe for every tick. Those that exceed the budget are dropped one by one and not at the end.
+#[test]
+fn keyframes_from_a_file_take_no_more_memory_than_their_budget() {
+    let ticks = 2000;
+    let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 1).expect("a setup");
+    (0..ticks).for_each(|_| recording.step(&[Vec::new()]).expect("one input"));
+    let file = recording.finish().expect("no claims");
+    let open = |bytes| {
+        let options = TimelineOptions { interval: 1, bytes };
+        Timeline::<Sandbox>::open(&file, &options, &Limits::default()).expect("a replay")
+    };
+    let mut timeline = open(64 << 20);
+    timeline.play_all().expect("a valid replay");
+    let keyframes = timeline.keyframes_to_bytes();
+    let mut narrow = open(64 << 10);
+    let before = counting::bytes();
+    narrow.use_keyframes(&keyframes).expect("of this replay");
+    let used = counting::bytes() - before;
+    let (all, few) = (timeline.keyframes().count(), narrow.keyframes().count());
+    println!("{few} of {all} keyframes: {used} bytes for a file of {} bytes", keyframes.len());
+    assert!(all == 2001 && few < 100);
+    // The decoded file takes as much memory as the file.
+    assert!(used < 2 * keyframes.len(), "{used} bytes for a file of {} bytes", keyframes.len());
 }

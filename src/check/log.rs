@@ -11,18 +11,18 @@ use crate::replay::{
     CHECKPOINT_INTERVAL, Flaw, Limits, RawReplay, ReadError, Reader, Recording, TickInputs, Verdict,
 };
 
-pub(super) const INTERVAL: u32 = CHECKPOINT_INTERVAL;
-
 pub(super) type Inputs<G> = Rc<[<G as Game>::Input]>;
 
 pub(super) struct Log<G: Game> {
     pub(super) players: u32,
+    /// Ticks between checkpoints of recorded replays.
+    pub(super) interval: u32,
     pub(super) ticks: Vec<Inputs<G>>,
 }
 
 impl<G: Game> Log<G> {
     pub(super) fn new(players: u32) -> Self {
-        Log { players, ticks: Vec::new() }
+        Log { players, interval: CHECKPOINT_INTERVAL, ticks: Vec::new() }
     }
 
     pub(super) fn push(&mut self, inputs: &[G::Input]) -> Result<(), InputError> {
@@ -32,7 +32,7 @@ impl<G: Game> Log<G> {
     }
 
     pub(super) fn of(&self, ticks: Vec<Inputs<G>>) -> Self {
-        Log { players: self.players, ticks }
+        Log { ticks, ..*self }
     }
 
     pub(super) fn len(&self) -> u64 {
@@ -45,7 +45,7 @@ impl<G: Game> Log<G> {
 
     /// Records a replay, up to the first tick that cannot be recorded.
     pub(super) fn record(&self, setup: &G::Setup) -> Vec<u8> {
-        let Ok(mut recording) = Recording::<G>::start(setup, INTERVAL) else {
+        let Ok(mut recording) = Recording::<G>::start(setup, self.interval) else {
             return Vec::new();
         };
         let mut file = Vec::new();
@@ -74,7 +74,8 @@ pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Log
     let reader = Reader::open(file, limits).map_err(refused)?;
     let no_setup = |_| Verdict::Malformed { offset: 0, flaw: Flaw::Setup };
     let setup = codec::decode(reader.header().setup).map_err(no_setup)?;
-    let mut log = Log::<G>::new(players);
+    let interval = reader.header().checkpoint_interval;
+    let mut log = Log::<G> { players, interval, ticks: Vec::new() };
     let mut last: Option<(&[u8], Inputs<G>)> = None;
     while log.len() < to {
         let Some(run) = ticks.next_tick().map_err(refused)? else {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::checker::{Checked, Checker};
 use super::failure::Failure;
 use super::finding::{Fault, Finding};
-use super::log::{INTERVAL, Inputs, Log};
+use super::log::{Inputs, Log};
 use super::options::{CheckOptions, Depths, Variant};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
@@ -45,7 +45,7 @@ fn run_counted<G: Game>(
 
 fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<(), Box<Finding>> {
     let found = |fault, tick| Err(Box::new(Finding::new(Variant::Recorded, fault, tick)));
-    let mut recording = match Recording::<G>::start(setup, INTERVAL) {
+    let mut recording = match Recording::<G>::start(setup, log.interval) {
         Ok(recording) => recording,
         Err(error) => return found(Fault::Unrecordable(error), 0),
     };

@@ -42,8 +42,8 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::lockstep::Game;
-use crate::replay::{Recorder, Verdict};
-use log::{INTERVAL, Log, Logged};
+use crate::replay::{CHECKPOINT_INTERVAL, Recorder, Verdict};
+use log::{Log, Logged};
 
 /// Plays a game with the inputs of every tick, in every [`Variant`] of the options.
 ///
@@ -58,7 +58,7 @@ pub fn check<G: Game>(
     inputs: &[Vec<G::Input>],
     options: &CheckOptions,
 ) -> Result<Checked, CheckError> {
-    let (_, game) = Recorder::<G>::start(setup, INTERVAL)?;
+    let (_, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
     let mut log = Log::<G>::new(game.players());
     for inputs in inputs {
         log.push(inputs)?;

@@ -25,11 +25,14 @@ const PACKETS_PER_UPDATE: usize = 4096;
 /// Call [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
 ///
 /// ```no_run
-/// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address}};
-/// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
+/// # use lockstep2d::{lockstep::Game, peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address}};
+/// # fn join<MyGame: Game>(setup: &MyGame::Setup) -> Result<(), Box<dyn std::error::Error>> {
+/// // A second player joins the match of a host.
+/// let (options, me) = (PeerOptions::lockstep(), PeerIdentity::random());
 /// let host = socket_address("203.0.113.5:7000".parse()?);
-/// let mut peer = Peer::<Sandbox, _>::join(&SandboxSetup::default(), options, me, Udp::bind("0.0.0.0:0")?, host)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// let mut peer = Peer::<MyGame, _>::join(setup, options, me, Udp::bind("0.0.0.0:0")?, host)?;
+/// # Ok(())
+/// # }
 /// ```
 pub struct Peer<G: Game, T> {
     transport: T,

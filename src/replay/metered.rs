@@ -2,8 +2,23 @@ use super::limits::{LimitKind, Limits};
 use super::verdict::Verdict;
 use crate::lockstep::Game;
 
-/// Plays a tick with `step`, within the limits of a tick and of the replay. `spent` is the work so far.
-pub(crate) fn play_within<G: Game, T>(
+/// Plays a tick by calling `step`, within [`Limits::tick_work`] and [`Limits::total_work`]. `spent` is the work of the
+/// setup and of the earlier ticks, and grows by that of this tick: see [`RawReplay::work`](super::RawReplay::work).
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, play_within};
+/// // A server refuses inputs that would take too long.
+/// let (mut game, mut spent) = (Sandbox::new(&SandboxSetup::default())?, 0);
+/// let limits = Limits { total_work: 100, ..Limits::default() };
+/// let ticks = (0..).take_while(|_| play_within(&mut game, &[vec![]], &limits, &mut spent, Sandbox::step).is_ok());
+/// assert_eq!(ticks.count(), 12);
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
+///
+/// # Errors
+/// [`Verdict::LimitExceeded`]. The state is wrong if the work is known only once it is done.
+pub fn play_within<G: Game, T>(
     game: &mut G,
     inputs: &[G::Input],
     limits: &Limits,

@@ -41,7 +41,7 @@ pub use format::{
 };
 pub use header::Header;
 pub use limits::{LimitKind, Limits};
-pub(crate) use metered::play_within;
+pub use metered::play_within;
 pub use raw_replay::RawReplay;
 pub use reader::{InputBlock, Part, ReadError, Reader};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};

@@ -1,6 +1,7 @@
 use alloc::vec::Vec;
 
 use super::flaw::Flaw;
+use super::header::Header;
 use super::limits::Limits;
 use super::metered::play_within;
 use super::tick_inputs::TickInputs;
@@ -139,7 +140,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         };
         if self.encoded != Some(run.encoded) {
             let malformed = |_| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs };
-            let players = self.position.inputs.reader().header().players;
+            let players = self.header().players;
             self.inputs = decode_inputs(run.encoded, players).map_err(malformed)?;
             self.encoded = Some(run.encoded);
         }
@@ -173,7 +174,11 @@ impl<'a, G: Game> RawReplay<'a, G> {
     }
 
     pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
-        decode_setup::<G>(self.position.inputs.reader().header())
+        decode_setup::<G>(self.header())
+    }
+
+    pub(crate) fn header(&self) -> &Header<'a> {
+        self.position.inputs.reader().header()
     }
 
     pub(super) fn position(&self) -> &ReplayPosition<'a> {

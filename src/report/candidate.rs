@@ -18,6 +18,7 @@ use super::stage::Stage;
 use crate::body::{BodyId, Handle};
 use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
+use crate::replay::{Limits, play_within};
 use crate::world::BodyField;
 
 /// Maximum work units that [`compare`](super::compare::compare) spends on bit flips: about ten seconds.
@@ -196,15 +197,16 @@ fn search<G: Game>(
     game.load(&wrong.before);
     let everybody = candidates.is_empty();
     let before = if everybody { loose_bodies(game) } else { Vec::new() };
-    let step_work = game.work(&wrong.inputs).max(TRY_WORK);
-    game.step(&wrong.inputs);
+    let mut left = u64::MAX;
+    play(wrong, game, &mut left);
+    let step_work = u64::MAX - left;
     let after = if everybody { loose_bodies(game) } else { Vec::new() };
     let right = game.save();
     let of_bodies = [(When::After, after), (When::Before, before)]
         .into_iter()
         .flat_map(|(when, bodies)| bodies.into_iter().flat_map(move |body| Candidate::all_of(body, when)));
     let loading = step_work / 2;
-    let mut left = work;
+    left = work;
     // The state that the game has, if no bit of it is flipped.
     let mut loaded = None;
     for candidate in candidates.into_iter().chain(of_bodies) {
@@ -227,15 +229,23 @@ fn search<G: Game>(
             continue;
         }
         loaded = None;
-        if when == When::Before {
-            left -= simulating;
-            game.step(&wrong.inputs);
+        if when == When::Before && !play(wrong, game, &mut left) {
+            continue;
         }
         if wrong.wrong.is(game.state_hash()) {
             return Some(candidate);
         }
     }
     None
+}
+
+/// Plays the tick with at most `left` work units, and subtracts those that it took. Returns whether they were enough.
+fn play<G: Game>(wrong: &WrongTick<G>, game: &mut G, left: &mut u64) -> bool {
+    let limits = Limits { tick_work: *left, total_work: *left, ..Limits::default() };
+    let mut spent = 0;
+    let played = play_within(game, &wrong.inputs, &limits, &mut spent, G::step);
+    *left = left.saturating_sub(spent.max(TRY_WORK));
+    played.is_ok()
 }
 
 /// The body of a path.

@@ -1,6 +1,7 @@
 //! Comparison of two replays with different setups or inputs, both simulated by the running engine.
 //!
-//! While states and inputs are equal, one game serves both sides.
+//! With equal setups, one game serves both sides while states and inputs are equal. Otherwise both are simulated,
+//! because games of different setups can go on in different ways from equal states.
 
 use alloc::format;
 
@@ -30,13 +31,13 @@ pub(super) fn run<G: Game>(
             Ok(Step::Ended) => break,
             Err(ReplayComparisonError::Compare(error)) => return Err(error),
             Err(ReplayComparisonError::Verdict(side, verdict)) => {
-                let tick = comparison.a.tick();
+                let tick = comparison.played();
                 comparison.found.notes.push(format!("{side} cannot be played beyond tick {tick}: {verdict}"));
                 break;
             }
         }
     }
-    let played = comparison.a.tick();
+    let played = comparison.played();
     comparison.found.simulated = Some(played);
     Ok(())
 }
@@ -59,7 +60,12 @@ struct ReplayComparison<'f, 'a, G: Game> {
 }
 
 impl<G: Game> ReplayComparison<'_, '_, G> {
-    /// Plays a tick from the common state of both sides, which is the state of A's game.
+    /// Number of ticks that both sides have played.
+    fn played(&self) -> u64 {
+        self.a.tick().min(self.b.tick())
+    }
+
+    /// Plays a tick. With equal setups, it starts from the state of A's game.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;
@@ -67,22 +73,26 @@ impl<G: Game> ReplayComparison<'_, '_, G> {
         if (a, b) != (Step::Ticked, Step::Ticked) {
             return Ok(Step::Ended);
         }
-        if self.a.encoded() == self.b.encoded() {
+        let is_shared = self.found.setup.is_empty();
+        if is_shared && self.a.encoded() == self.b.encoded() {
             self.a.play().map_err(of(Side::A))?;
             self.b.skip();
             self.found.last_equal = Some(self.a.tick());
             return Ok(Step::Ticked);
         }
         let before = self.a.game().save();
-        self.b.game_mut().load(&before);
+        if is_shared {
+            self.b.game_mut().load(&before);
+        }
+        let before = [before, self.b.game().save()];
         self.a.play().map_err(of(Side::A))?;
         self.b.play().map_err(of(Side::B))?;
         self.compare(self.a.tick())?;
         if self.found.first_different.is_some() {
-            let (a, b) = (self.a.inputs().to_vec(), self.b.inputs().to_vec());
-            let game = self.a.game_mut();
-            let [a, b] = [a, b].map(|inputs| {
-                game.load(&before);
+            let [a, b] = [(&mut self.a, &before[0]), (&mut self.b, &before[1])].map(|(raw, before)| {
+                let inputs = raw.inputs().to_vec();
+                let game = raw.game_mut();
+                game.load(before);
                 TickPhases::of(game, &inputs)
             });
             self.found.stage = a.parting(&b);

@@ -70,6 +70,7 @@ fn play<G: Game>(
         effort,
         found,
         side,
+        setup_work: raw.work(),
         raw,
         previous: None,
         wrong: None,
@@ -141,6 +142,7 @@ struct Beside<'a, 'k, G: Game> {
     /// The side whose replay is played.
     side: Side,
     raw: RawReplay<'k, G>,
+    setup_work: u64,
     /// State of the rerun before the current tick.
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
@@ -286,7 +288,9 @@ impl<G: Game> Beside<'_, '_, G> {
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, limits, effort, found, raw, wrong, states, presumed, obstacle, .. } = self;
+        let Beside {
+            known, limits, effort, found, raw, setup_work, wrong, states, presumed, obstacle, ..
+        } = self;
         found.notes.extend(obstacle);
         let trajectories = &found.trajectories;
         let came_later = |states: &States<G::Save>| {
@@ -309,8 +313,9 @@ impl<G: Game> Beside<'_, '_, G> {
         let work = match effort {
             Effort::Thorough => candidate::WORK_MAX,
             Effort::Bounded => {
-                let whole = raw.work() / raw.tick().max(1) * raw.ticks();
-                whole.saturating_mul(5) / 2 - raw.work().min(whole)
+                let played = raw.work() - setup_work;
+                let whole = (played / raw.tick().max(1)).saturating_mul(raw.ticks());
+                (whole.saturating_mul(5) / 2).saturating_sub(played)
             }
         };
         let mut game = raw.into_game();

@@ -98,7 +98,7 @@ impl<G: Game> Trace<G> {
         ticks: u32,
     ) -> Result<DesyncReport, TraceError> {
         let mut raw = RawReplay::<G>::open(file, limits)?;
-        let (mut recorder, _) = Recorder::<G>::start(&raw.setup()?, CHECKPOINT_INTERVAL)?;
+        let (mut recorder, _) = Recorder::<G>::start(&raw.setup()?, raw.header().checkpoint_interval)?;
         let mut memory = Memory::new(ticks, limits.file_bytes);
         let from = until.min(raw.ticks()).saturating_sub(ticks.into());
         if from == 0 {

@@ -10,20 +10,22 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// Two shapes that began or ceased to touch.
 ///
 /// ```
+/// # use std::collections::BTreeSet;
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
 /// use lockstep2d::world::ContactEvent;
 /// # let mut world = World::default();
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let lava = world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
-/// let victim = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// let victim = world.spawn(&BodyDef::dynamic(), &[square, square])?;
 /// world.step();
-/// // Removes every body that touches the lava. All events are read before the world is changed.
+/// // Removes every body that touches the lava. All events are read before the world is changed, and a body of several
+/// // shapes can have several events.
 /// let other = |event: &ContactEvent| {
 ///     let pair = event.shapes().map(|shape| world.body_of(shape));
 ///     let is_lava = |body: &_| *body == Some(lava);
 ///     if pair.iter().any(is_lava) { pair.into_iter().find(|body| !is_lava(body))? } else { None }
 /// };
-/// let burnt: Vec<_> = world.events().contact_begin.iter().filter_map(other).collect();
+/// let burnt: BTreeSet<_> = world.events().contact_begin.iter().filter_map(other).collect();
 /// burnt.into_iter().try_for_each(|body| world.despawn(body))?;
 /// assert!(world.body(victim).is_none() && world.body(lava).is_some());
 /// # Ok::<(), lockstep2d::body::WorldError>(())

@@ -5,6 +5,7 @@ mod bisect;
 mod compare;
 mod fields;
 mod format;
+mod strangers;
 mod yard;
 
 use lockstep2d_tests::sweep;

@@ -18,6 +18,8 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
+    /// Whether a command has written its output file to the standard output, so that its lines are messages.
+    pub(crate) is_out_taken: bool,
     /// Whether messages go to a terminal.
     pub(crate) is_terminal: bool,
     /// Whether the process runs only this command. The command then handles the signals of the process.
@@ -27,7 +29,8 @@ pub(crate) struct Console<'a> {
 impl Console<'_> {
     /// Writes a line with one write call, so that output of the game cannot split it.
     pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
-        self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
+        let stream = if self.is_out_taken { &mut *self.err } else { &mut *self.out };
+        stream.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }
 
     pub(crate) fn json(&mut self, document: &impl Serialize) -> Result<(), CommandError> {

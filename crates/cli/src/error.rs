@@ -159,9 +159,9 @@ impl CommandError {
 
     pub(crate) fn exit(&self) -> Exit {
         match self {
-            CommandError::Replay { .. } | CommandError::Trace { .. } | CommandError::Panicked { .. } => {
-                Exit::NoMatch
-            }
+            CommandError::Replay { .. }
+            | CommandError::Trace { error: TraceError::Replay(_), .. }
+            | CommandError::Panicked { .. } => Exit::NoMatch,
             _ => Exit::Trouble,
         }
     }

@@ -6,16 +6,19 @@
 //!   program creates just before [`OutputFile::publish`] can still be replaced.
 //! - If the file system has locks, one process at a time writes a target. The others fail.
 //! - On Unix, only its owner can read a private file.
+//! - An input that is the temporary file of a killed process is left unchanged.
 //!
 //! A killed process leaves its temporary file, which the next writer of the target reuses.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use same_file::Handle;
 
+use crate::console::Console;
 use crate::error::CommandError;
 
 /// Suffix of the temporary file.
@@ -57,23 +60,31 @@ pub(crate) struct OutputFile {
     /// The open file. It is locked, unless the target is written directly or the file system has no locks.
     file: File,
     overwrite: Overwrite,
+    /// The input, locked, if it has the usual name of the temporary file.
+    _input: Option<File>,
 }
 
 impl OutputFile {
     /// Creates the temporary file of a target. Call it before long computations, so that errors are reported early.
     /// Fails if the target exists and `--force` is not set, or if another process writes the target.
     ///
-    /// A target that is not a regular file, such as `/dev/stdout`, is written directly.
-    pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
-        Self::create_for(path, overwrite, Readers::Default)
+    /// A target that is not a regular file, such as `/dev/stdout`, is written directly. `inputs` are never used as
+    /// temporary files.
+    pub(crate) fn create(path: &Path, overwrite: Overwrite, inputs: &[&Path]) -> Result<Self, CommandError> {
+        Self::create_for(path, overwrite, inputs, Readers::Default)
     }
 
     /// Creates a file that only its owner can read, on Unix: see [`OutputFile::create`].
     pub(crate) fn create_private(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
-        Self::create_for(path, overwrite, Readers::Owner)
+        Self::create_for(path, overwrite, &[], Readers::Owner)
     }
 
-    fn create_for(path: &Path, overwrite: Overwrite, readers: Readers) -> Result<Self, CommandError> {
+    fn create_for(
+        path: &Path,
+        overwrite: Overwrite,
+        inputs: &[&Path],
+        readers: Readers,
+    ) -> Result<Self, CommandError> {
         let failed = CommandError::write(path);
         check(path, overwrite)?;
         let name = path.to_path_buf();
@@ -82,17 +93,21 @@ impl OutputFile {
         match fs::metadata(&target) {
             Ok(metadata) if !metadata.is_file() => {
                 let file = File::options().write(true).open(&target).map_err(failed)?;
-                return Ok(OutputFile { name, target, temporary: None, file, overwrite });
+                return Ok(OutputFile { name, target, temporary: None, file, overwrite, _input: None });
             }
             Ok(_) => {}
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(failed(error)),
         }
-        let mut temporary = target.clone().into_os_string();
-        temporary.push(SUFFIX);
-        let temporary = PathBuf::from(temporary);
-        let file = lock(&temporary, &name, readers)?;
-        let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite };
+        let mut temporary = unfinished(&target);
+        let mut file = lock(&temporary, &name, readers)?;
+        let mut input = None;
+        if inputs.iter().any(|input| is_at(&file, input)) {
+            temporary = unfinished(&temporary);
+            // The lock of the usual name is held as well, because it keeps other writers from the target.
+            input = Some(mem::replace(&mut file, lock(&temporary, &name, readers)?));
+        }
+        let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite, _input: input };
         // Another writer may have had the lock until now, and published the target.
         check(path, overwrite)?;
         output.file.set_len(0).map_err(failed)?;
@@ -104,10 +119,12 @@ impl OutputFile {
     }
 
     /// Makes the file appear under its name, after its bytes have reached the disk. Without `--force`, fails if another
-    /// program has created the target meanwhile.
-    pub(crate) fn publish(mut self) -> Result<(), CommandError> {
+    /// program has created the target meanwhile. If the target is the standard output, the lines that follow go to the
+    /// message stream.
+    pub(crate) fn publish(mut self, console: &mut Console<'_>) -> Result<(), CommandError> {
         let failed = CommandError::write(&self.name);
         let Some(temporary) = &self.temporary else {
+            console.is_out_taken |= is_same(&self.file, Handle::stdout());
             return self.file.flush().map_err(failed);
         };
         self.file.sync_all().map_err(&failed)?;
@@ -145,6 +162,12 @@ impl Drop for OutputFile {
             let _ = fs::remove_file(temporary);
         }
     }
+}
+
+fn unfinished(path: &Path) -> PathBuf {
+    let mut path = path.as_os_str().to_os_string();
+    path.push(SUFFIX);
+    path.into()
 }
 
 /// Refuses an existing regular file without `--force`.
@@ -196,12 +219,22 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
 
 /// Whether `path` still names the open file.
 fn is_at(file: &File, path: &Path) -> bool {
-    let open = file.try_clone().and_then(Handle::from_file);
-    matches!((open, Handle::from_path(path)), (Ok(open), Ok(named)) if open == named)
+    is_same(file, Handle::from_path(path))
 }
 
-pub(crate) fn save(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<(), CommandError> {
-    let mut output = OutputFile::create(path, overwrite)?;
+fn is_same(file: &File, other: io::Result<Handle>) -> bool {
+    let file = file.try_clone().and_then(Handle::from_file);
+    matches!((file, other), (Ok(file), Ok(other)) if file == other)
+}
+
+pub(crate) fn save(
+    path: &Path,
+    bytes: &[u8],
+    overwrite: Overwrite,
+    inputs: &[&Path],
+    console: &mut Console<'_>,
+) -> Result<(), CommandError> {
+    let mut output = OutputFile::create(path, overwrite, inputs)?;
     output.append(bytes)?;
-    output.publish()
+    output.publish(console)
 }

@@ -5,13 +5,17 @@ use std::path::Path;
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Reader, RecordError, Recorder, Step, Verdict, VerifiedReplay, verify};
+use lockstep2d::replay::{
+    Limits, Reader, RecordError, Recorder, Step, Verdict, VerifiedReplay, play_within, verify,
+};
 
 use crate::error::CommandError;
 
 pub(crate) struct Copy<G: Game> {
     game: G,
     recorder: Recorder<G>,
+    /// Work units so far.
+    work: u64,
 }
 
 pub(crate) enum CopyError {
@@ -46,7 +50,7 @@ impl<G: Game> Copy<G> {
                 agreed = recorder.ticks();
             }
         }
-        Ok(Copy { game: replay.into_game(), recorder })
+        Ok(Copy { work: replay.work(), game: replay.into_game(), recorder })
     }
 
     pub(crate) fn ticks(&self) -> u64 {
@@ -57,8 +61,10 @@ impl<G: Game> Copy<G> {
         self.game.players()
     }
 
-    pub(crate) fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
-        self.game.step(self.recorder.record(inputs)?);
+    pub(crate) fn step(&mut self, inputs: &[G::Input], limits: &Limits) -> Result<(), CopyError> {
+        let inputs = self.recorder.record(inputs).map_err(CopyError::Record)?;
+        play_within(&mut self.game, inputs, limits, &mut self.work, G::step)
+            .map_err(|verdict| CopyError::Replay { ticks: 0, verdict })?;
         if self.recorder.is_checkpoint_due() {
             self.recorder.checkpoint(self.game.state_hash());
         }

@@ -111,7 +111,8 @@ impl<G: Game> Tool<G> {
         // The streams are not locked: a game that prints or panics on another thread would wait for the lock forever.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
-        let console = Console { out: &mut out, err: &mut err, is_terminal, owns_process: true };
+        let console =
+            Console { out: &mut out, err: &mut err, is_out_taken: false, is_terminal, owns_process: true };
         self.run_on(std::env::args_os(), console).into()
     }
 
@@ -126,7 +127,10 @@ impl<G: Game> Tool<G> {
     where
         A: Into<OsString> + Clone,
     {
-        self.run_on(arguments, Console { out, err, is_terminal: false, owns_process: false })
+        self.run_on(
+            arguments,
+            Console { out, err, is_out_taken: false, is_terminal: false, owns_process: false },
+        )
     }
 
     fn run_on<'a, A>(&'a self, arguments: impl IntoIterator<Item = A>, mut console: Console<'a>) -> Exit

@@ -3,8 +3,8 @@
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
 //! The first player in the room opens the match. A bot provides the inputs. FILE is a replay of the sandbox, equal to
-//! that of a web page. The program prints a line of JSON when it has entered the room, and one at the end. Exit codes:
-//! 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! that of a web page; a player who joined late has none. The program prints a line of JSON when it has entered the
+//! room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -183,7 +183,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let end = peer.finish()?;
     replay.extend(end.replay);
     if let Some(path) = &arguments.output {
-        std::fs::write(path, as_sandbox(&replay)?)?;
+        if replay.is_empty() {
+            eprintln!("{}: not written, because a replay starts at the first tick", path.display());
+        } else {
+            std::fs::write(path, as_sandbox(&replay)?)?;
+        }
     }
     println!("{}", json!({ "ticks": end.ticks, "hash": end.game.state_hash().to_string() }));
     Ok(())

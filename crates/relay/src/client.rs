@@ -87,20 +87,21 @@ enum State {
 /// meantime. A connection that is silent for 15 s, although [`Transport::receive`] is called, counts as lost.
 ///
 /// ```no_run
-/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 /// use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions};
 /// use lockstep2d_relay::Relay;
+/// # use lockstep2d::lockstep::Game;
+/// # fn enter<MyGame: Game>(setup: &MyGame::Setup) -> Result<Peer<MyGame, Relay>, Box<dyn std::error::Error>> {
 ///
 /// let mut relay = Relay::connect("ws://127.0.0.1:7010", "ABCD", rand_bytes())?;
 /// // If another member is in the room, this peer joins the match through it; the first member opens the match.
-/// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
-/// let setup = SandboxSetup::default();
+/// let (options, me) = (PeerOptions::lockstep(), PeerIdentity::random());
 /// let peer = match relay.others().first().cloned() {
-///     None => Peer::<Sandbox, _>::host(&setup, options, me, relay)?,
-///     Some(contact) => Peer::<Sandbox, _>::join(&setup, options, me, relay, contact)?,
+///     None => Peer::<MyGame, _>::host(setup, options, me, relay)?,
+///     Some(contact) => Peer::<MyGame, _>::join(setup, options, me, relay, contact)?,
 /// };
+/// # Ok(peer)
+/// # }
 /// # fn rand_bytes() -> [u8; 16] { [7; 16] }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Relay {
     target: Target,

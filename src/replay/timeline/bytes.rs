@@ -7,7 +7,6 @@ use core::fmt;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::super::raw_replay::ReplayPosition;
 use super::keyframes::{Keyframe, Keyframes};
 use crate::codec::DecodeError;
 use crate::hash::{Envelope, EnvelopeError, StateHash};
@@ -216,13 +215,9 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-pub(super) fn place<'a>(
-    start: &ReplayPosition<'a>,
-    ticks: u64,
-    body: Body,
-) -> Result<Vec<Keyframe<'a>>, KeyframesError> {
-    let mut position = start.clone();
-    let mut keyframes = Vec::new();
+/// Inserts the saves of a file into `keyframes`, which thins them out as soon as they exceed its memory.
+pub(super) fn place(body: Body, ticks: u64, keyframes: &mut Keyframes<'_>) -> Result<(), KeyframesError> {
+    let mut position = keyframes.first().position.clone();
     for (tick, Save(save)) in body.saves {
         while position.tick < tick.min(ticks) && matches!(position.inputs.next_tick(), Ok(Some(_))) {
             position.tick += 1;
@@ -233,7 +228,7 @@ pub(super) fn place<'a>(
         if position.inputs.finished_block().is_none() {
             return Err(KeyframesError::Invalid(KeyframesFlaw::Checkpoint));
         }
-        keyframes.push(Keyframe { position: position.clone(), save });
+        keyframes.insert(Keyframe { position: position.clone(), save });
     }
-    Ok(keyframes)
+    Ok(())
 }

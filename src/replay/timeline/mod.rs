@@ -293,11 +293,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         let body = bytes::decode::<G>(self.file, bytes)?;
         let interval = body.interval.saturating_mul(self.interval().div_ceil(body.interval));
         let start = self.keyframes.first().clone();
-        let found = bytes::place(&start.position, self.ticks(), body)?;
         let mut keyframes = Keyframes::new(start, interval, self.keyframes.bytes_max());
-        for frame in found {
-            keyframes.insert(frame);
-        }
+        bytes::place(body, self.ticks(), &mut keyframes)?;
         self.keyframes = keyframes;
         Ok(())
     }

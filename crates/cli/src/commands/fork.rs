@@ -49,7 +49,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
-    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
+    let inputs = [Some(&arguments.file), arguments.then.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite, &inputs)?;
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let mut copy = Copy::<G>::new(&bytes, arguments.tick, limits).map_err(of_file)?;
     let kept = copy.ticks();
@@ -58,18 +60,18 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         return Err(CommandError::NoSuchTick { path, tick: arguments.tick, ticks: kept });
     }
     if let Some(path) = &arguments.then {
-        play_lines(&mut copy, path, limits)?;
+        play_lines(&mut copy, path, arguments, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
     // The number of idle ticks is limited. One tick beyond the limit is enough to fail the verification.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
-        copy.step(&idle)?;
+        copy.step(&idle, limits).map_err(|error| error.of_file(&arguments.output))?;
     }
     let ticks = copy.ticks();
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
     output.append(&replay)?;
-    output.publish()?;
+    output.publish(&mut context.console)?;
 
     let added = ticks - kept;
     if arguments.json {
@@ -94,7 +96,12 @@ struct Line {
     hash: String,
 }
 
-fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Result<(), CommandError> {
+fn play_lines<G: Game>(
+    copy: &mut Copy<G>,
+    path: &Path,
+    arguments: &Arguments,
+    limits: &Limits,
+) -> Result<(), CommandError> {
     let read_error = CommandError::read(path);
     let source: Box<dyn Read> = if path == Path::new("-") {
         Box::new(io::stdin().lock())
@@ -111,7 +118,10 @@ fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Resu
         let explain = |why| CommandError::Inputs { path: path.to_path_buf(), line: number, why };
         let inputs: Vec<G::Input> =
             serde_json::from_str(&line).map_err(|error| explain(error.to_string()))?;
-        copy.step(&inputs).map_err(|error| explain(error.to_string()))?;
+        copy.step(&inputs, limits).map_err(|error| match error {
+            CopyError::Record(error) => explain(error.to_string()),
+            error => error.of_file(&arguments.output),
+        })?;
     }
     Ok(())
 }

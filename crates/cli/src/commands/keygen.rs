@@ -43,7 +43,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let mut output = OutputFile::create_private(&arguments.output, overwrite)?;
     let secret = SecretKey::generate().map_err(CommandError::Random)?;
     output.append(secret.text().as_bytes())?;
-    output.publish()?;
+    output.publish(&mut context.console)?;
     let key = secret.public_key();
     if arguments.json {
         let file = arguments.output.display().to_string();

@@ -43,9 +43,9 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     let ticks = arguments.ticks.unwrap_or(scene.ticks);
     let recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;
-    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite, &[])?;
     let hash = write(recording, scene, ticks, &mut output)?;
-    output.publish()?;
+    output.publish(&mut context.console)?;
     let file = Shown(&arguments.output);
     context.console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
     Ok(Exit::Success)

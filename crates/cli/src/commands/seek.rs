@@ -63,18 +63,24 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     if let Some(path) = &arguments.keyframes {
         use_keyframes(&mut timeline, path)?;
     }
-    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite);
+    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite, &[&arguments.file]);
     let output = arguments.output.as_ref().map(create).transpose()?;
     let known = timeline.keyframes().count();
     let result = go(&mut timeline, arguments);
     if let Some(path) = arguments.keyframes.as_ref().filter(|_| timeline.keyframes().count() != known) {
-        output_file::save(path, &timeline.keyframes_to_bytes(), Overwrite::ALWAYS)?;
+        output_file::save(
+            path,
+            &timeline.keyframes_to_bytes(),
+            Overwrite::ALWAYS,
+            &[&arguments.file],
+            &mut context.console,
+        )?;
     }
     let (there, back) = result?;
 
     if let Some(mut output) = output {
         output.append(&codec::encode(&timeline.game().save()))?;
-        output.publish()?;
+        output.publish(&mut context.console)?;
     }
     let found = SeekResult {
         file: arguments.file.display().to_string(),

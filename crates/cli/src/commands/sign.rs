@@ -47,7 +47,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 
     let beside = path_beside(&arguments.file);
     // The file is locked before the signatures are read, so that simultaneous processes lose no signature.
-    let mut output = OutputFile::create(&beside, Overwrite::ALWAYS)?;
+    let mut output = OutputFile::create(&beside, Overwrite::ALWAYS, &[])?;
     let mut signatures = match read_signatures(&beside) {
         Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
             Signatures::default()
@@ -56,7 +56,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     signatures.add(secret.sign(&game)).map_err(CommandError::line(&beside))?;
     output.append(signatures.to_string().as_bytes())?;
-    output.publish()?;
+    output.publish(&mut context.console)?;
 
     let key = secret.public_key();
     if arguments.json {

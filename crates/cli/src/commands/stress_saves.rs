@@ -59,7 +59,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         return Err(CommandError::Reversed { from: arguments.from, to });
     }
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
-    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite);
+    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite, &[&arguments.file]);
     let output = arguments.output.as_ref().map(create).transpose()?;
     let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
         Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
@@ -73,7 +73,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     if let (Err(failure), Some(mut output)) = (&result, output) {
         output.append(&failure.replay)?;
-        output.publish()?;
+        output.publish(&mut context.console)?;
     }
     let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
     if arguments.json {

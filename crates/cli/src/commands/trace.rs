@@ -40,14 +40,14 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let Arguments { file, to, ticks, output, overwrite } = arguments;
     let bytes = context.load(file)?;
-    let mut written = OutputFile::create(output, *overwrite)?;
+    let mut written = OutputFile::create(output, *overwrite, &[file])?;
     let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
     if let Some(tick) = to.filter(|tick| *tick > report.tick()) {
         return Err(CommandError::NoSuchTick { path: file.clone(), tick, ticks: report.tick() });
     }
     written.append(&report.to_bytes())?;
-    written.publish()?;
+    written.publish(&mut context.console)?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());
     let first = report.history().first().map_or(0, |(tick, _)| *tick);
     context.console.line(format_args!(

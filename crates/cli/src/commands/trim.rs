@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
-    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite, &[&arguments.file])?;
     let Whole { part, interval, damage } =
         whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
@@ -57,7 +57,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let ticks = copy.ticks();
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
     output.append(&replay)?;
-    output.publish()?;
+    output.publish(&mut context.console)?;
 
     // Damage after the last requested tick is not reported.
     let damage = damage.filter(|_| ticks < most);

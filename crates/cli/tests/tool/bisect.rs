@@ -1,13 +1,15 @@
 //! `bisect` and `trace`: files, results and exit codes.
 
-use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-use lockstep2d::replay::Recording;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
+use lockstep2d::replay::{Limits, Recording};
 use lockstep2d::world::Command;
-use lockstep2d_cli::Exit;
+use lockstep2d_cli::{Exit, Tool};
 use lockstep2d_scenes::Scene;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{Folder, run_sandbox};
+use crate::{Folder, run_sandbox, run_tool_of};
 
 fn ragdoll() -> SandboxSetup {
     Scene::find("ragdoll").unwrap().setup(0)
@@ -82,6 +84,79 @@ fn what_is_no_evidence_is_trouble() {
     let outcome = run_sandbox(&["trace", &file, "-o", &output]);
     assert_eq!(outcome.exit, Exit::NoMatch);
     assert!(outcome.err.contains("malformed"), "{}", outcome.err);
+}
+
+/// A player shouts, and nothing happens.
+#[derive(Clone, Serialize, Deserialize)]
+struct Shouts(u64);
+
+impl Game for Shouts {
+    type Setup = ();
+    type Input = String;
+    type Save = Shouts;
+
+    const RULES: RulesId = RulesId { name: "shouts", version: 1 };
+
+    fn new(_: &()) -> Result<Self, SetupError> {
+        Ok(Shouts(0))
+    }
+
+    fn players(&self) -> u32 {
+        1
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, _: &[String]) {
+        self.0 += 1;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(self)
+    }
+
+    fn save(&self) -> Shouts {
+        self.clone()
+    }
+
+    fn load(&mut self, save: &Shouts) {
+        *self = save.clone();
+    }
+
+    fn work(&self, _: &[String]) -> u64 {
+        1
+    }
+}
+
+/// Large inputs need short blocks. A command that records them again keeps the interval of the replay.
+#[test]
+fn a_replay_with_large_inputs_is_traced_and_stressed() {
+    let folder = Folder::new("trace-large");
+    let mut recording = Recording::<Shouts>::start(&(), 1).unwrap();
+    for letter in ["a", "b"] {
+        recording.step(&[letter.repeat(10_000_000)]).unwrap();
+    }
+    let file = folder.write("large.replay", &recording.finish().unwrap());
+    let tool = Tool::<Shouts>::new();
+    let trace = folder.path("trace");
+    let done = [&["verify", &file][..], &["trace", &file, "-o", &trace], &["stress-saves", "--all", &file]]
+        .map(|arguments| run_tool_of(&tool, arguments));
+    let exits = done.each_ref().map(|outcome| outcome.exit);
+    assert_eq!(exits, [Exit::Success; 3], "{:?}", done.map(|outcome| outcome.out + &outcome.err));
+}
+
+#[test]
+fn a_trace_that_is_too_long_is_wrong_usage() {
+    let folder = Folder::new("trace-long");
+    let bytes = replay(None);
+    let file = folder.write("a.replay", &bytes);
+    let limits = Limits { file_bytes: bytes.len() as u64 + 100, ..Limits::default() };
+    let tool = Tool::<Sandbox>::new().with_limits(limits);
+    let outcome = run_tool_of(&tool, &["trace", &file, "-o", &folder.path("trace")]);
+    assert!(outcome.err.contains("trace fewer ticks"), "{}", outcome.err);
+    assert_eq!(outcome.exit, Exit::Trouble);
 }
 
 #[test]

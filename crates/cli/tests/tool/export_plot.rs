@@ -9,7 +9,7 @@ use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{Limits, Step, VerifiedReplay};
 use lockstep2d_cli::Exit;
 
-use crate::{golden, run_sandbox};
+use crate::{Folder, golden, run_sandbox};
 
 /// Names of all start tags. Checks that elements are closed and quotes balanced.
 fn elements(xml: &str) -> Vec<&str> {
@@ -49,6 +49,16 @@ fn curve(svg: &str, name: &str) -> Vec<f64> {
         panel.split_once(&format!("class=\"{name}\" points=\"")).unwrap().1.split('"').next().unwrap();
     let points = polyline.split(' ').map(|point| point.split_once(',').unwrap().1.parse::<f64>().unwrap());
     points.map(|y| low + (y - y0) / (y1 - y0) * (high - low)).collect()
+}
+
+#[test]
+fn a_misleading_file_name_is_not_in_the_title() {
+    let folder = Folder::new("plot-name");
+    let file = folder.write("a\u{9b}2J\u{202e}b\u{7f}.replay", &std::fs::read(golden("free_fall")).unwrap());
+    let outcome = run_sandbox(&["export", &file, "--plot", "--to", "2"]);
+    assert_eq!(outcome.exit, Exit::Success, "{}", outcome.err);
+    assert!(outcome.out.contains("a\u{fffd}2J\u{fffd}b\u{fffd}"), "{}", &outcome.out[..500]);
+    elements(&outcome.out);
 }
 
 fn plot(scene: &str, arguments: &[&str]) -> String {

@@ -2,13 +2,13 @@
 
 use std::fs;
 
-use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
 use lockstep2d::replay::{Limits, Recording, Step, Verdict, VerifiedReplay, verify};
-use lockstep2d_cli::Exit;
+use lockstep2d_cli::{Exit, Tool};
 use serde_json::{Value, json};
 
-use crate::counter::{Counter, add, inputs_at, setup};
-use crate::{Folder, golden, replay, run, run_sandbox};
+use crate::counter::{Counter, Input, Setup, add, inputs_at, like_its_counter, setup};
+use crate::{Folder, golden, replay, run, run_sandbox, run_tool_of};
 
 #[test]
 fn a_fork_is_what_would_have_been_recorded() {
@@ -75,6 +75,47 @@ fn commands_of_the_sandbox_come_from_json() {
     assert!(!rises(&verified), "it falls at first");
     (0..61).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
     assert!(rises(&verified), "it rises after gravity is reversed");
+}
+
+/// A sum that panics in a tick after its limit of work, which must not be played.
+#[derive(Clone)]
+struct Fragile(Counter);
+
+impl Game for Fragile {
+    type Setup = Setup;
+    type Input = Input;
+    type Save = Counter;
+
+    const RULES: RulesId = Counter::RULES;
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        Counter::new(setup).map(Fragile)
+    }
+
+    fn step(&mut self, inputs: &[Input]) {
+        assert!(self.0.sum < 100 && self.0.tick < 50, "beyond the limits");
+        self.0.step(inputs);
+    }
+
+    like_its_counter!(0);
+}
+
+#[test]
+fn no_tick_is_played_beyond_a_limit() {
+    let folder = Folder::new("fork-limits");
+    let (file, new) = (folder.write("a.replay", &replay(35)), folder.path("new.replay"));
+    let one = "[{\"add\":1,\"wink\":false},{\"add\":0,\"wink\":false}]\n";
+    let heavy = folder.write("heavy", format!("{}{one}", one.replace('1', "120")).as_bytes());
+    for (limits, more, limit) in [
+        (Limits { tick_work: 50, ..Limits::default() }, ["--then", &heavy], "121 work units in one tick"),
+        (Limits { total_work: 90, ..Limits::default() }, ["--idle", "100"], "91 work units"),
+    ] {
+        let tool = Tool::<Fragile>::new().with_limits(limits);
+        let outcome = run_tool_of(&tool, &[&["fork", &file, "--tick", "20", "-o", &new], &more[..]].concat());
+        assert_eq!(outcome.exit, Exit::NoMatch, "{}", outcome.err);
+        assert!(outcome.err.contains(&format!("limit exceeded: {limit}")), "{}", outcome.err);
+        assert!(!fs::exists(&new).unwrap());
+    }
 }
 
 #[test]

@@ -136,6 +136,26 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
+/// The results of other commands would damage a file that is written to the standard output.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_on_the_standard_output_is_nothing_but_the_file() {
+    let folder = Folder::new("outputs-stdout");
+    let to = folder.path("out");
+    for (to_file, to_stdout) in writers(&to).into_iter().zip(writers("/dev/stdout")) {
+        let done = tool(&to_file);
+        let piped = tool(&to_stdout);
+        assert_eq!(piped.status.code(), Some(0), "{to_stdout:?}: {}", message(&piped));
+        assert!(piped.stdout == fs::read(&to).unwrap(), "{to_stdout:?}");
+        let shown = String::from_utf8(done.stdout).unwrap().replace(&to, "/dev/stdout");
+        assert_eq!(message(&piped), shown, "{to_stdout:?}");
+        fs::remove_file(&to).unwrap();
+    }
+    // Another device takes nothing from the results.
+    let done = tool(&["trim", &golden("box_stack"), "-o", "/dev/null"].map(String::from));
+    assert!(done.stdout.starts_with(b"/dev/null: "), "{}", message(&done));
+}
+
 /// Starts a long recording, and waits until its temporary file has at least 4000 bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];
@@ -164,6 +184,51 @@ fn a_killed_process_leaves_the_old_file_and_what_it_recorded() {
     let again = tool(&["record", "box_stack", "--ticks", "9", "--force", "-o", &to].map(String::from));
     assert_eq!(again.status.code(), Some(0), "{}", message(&again));
     assert_eq!(names(&folder), ["rescued.replay", "x.replay"]);
+}
+
+/// The unfinished file of a killed recorder may be the only recording. The natural name for what is made of it is that
+/// of its target.
+#[test]
+fn an_unfinished_file_is_an_input_like_any_other() {
+    let folder = Folder::new("outputs-unfinished");
+    let to = folder.path("x.replay");
+    let left = format!("{to}.unfinished");
+    let whole = fs::read(golden("box_stack")).unwrap();
+    let cut = &whole[..whole.len() - 20];
+    let moved = format!("{left}.unfinished");
+    for command in [
+        &["trim", &left] as &[&str],
+        &["fork", &left, "--tick", "60"],
+        &["trace", &left],
+        &["seek", &left, "--tick", "9"],
+        &["export", &left, "--to", "5", "--json"],
+    ] {
+        fs::write(&left, cut).unwrap();
+        let arguments: Vec<String> = [command, &["-o", &to]].concat().into_iter().map(String::from).collect();
+        let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
+        let full = Command::new("sh").args(["-c", script, "sh", TOOL]).args(&arguments).output().unwrap();
+        assert_eq!(full.status.code(), Some(2), "{command:?}");
+        assert_eq!(fs::read(&left).unwrap(), cut, "{command:?} on a full disk");
+        let done = tool(&arguments);
+        assert_eq!(done.status.code(), Some(0), "{command:?}: {}", message(&done));
+        assert_eq!(fs::read(&left).unwrap(), cut, "{command:?}");
+        assert_eq!(names(&folder), ["x.replay", "x.replay.unfinished"], "{command:?}");
+        fs::remove_file(&to).unwrap();
+    }
+    // Nothing can be kept of this one.
+    fs::write(&left, b"no replay").unwrap();
+    assert_eq!(tool(&["trim", &left, "-o", &to].map(String::from)).status.code(), Some(1));
+    assert_eq!(fs::read(&left).unwrap(), b"no replay");
+    assert!(!Path::new(&moved).exists());
+
+    // While the recorder runs, its file can be read, but its target cannot be written.
+    fs::remove_file(&left).unwrap();
+    let mut recorder = long_recorder(&to, &[]);
+    let busy = tool(&["trim", &left, "-o", &to].map(String::from));
+    assert!(message(&busy).contains("another process is writing it"), "{}", message(&busy));
+    recorder.kill().unwrap();
+    recorder.wait().unwrap();
+    assert_eq!(tool(&["trim", &left, "-o", &to].map(String::from)).status.code(), Some(0));
 }
 
 #[test]

@@ -233,6 +233,21 @@ fn a_pipe_beside_a_replay_does_not_block() {
     assert_eq!(signers(&folder, "a.replay", &[]), not_valid("malformed", &[]));
 }
 
+/// The line names the replay, by which results are joined, and not its signature file.
+#[cfg(unix)]
+#[test]
+fn a_replay_whose_signatures_cannot_be_read_is_named() {
+    let folder = keys("sign-unreadable", &["alice"]);
+    let file = folder.write("a.replay", &replay(35));
+    std::os::unix::fs::symlink("a.replay.sig", folder.path("a.replay.sig")).unwrap();
+    let outcome = run(&["verify", "--json", "--keys", &folder.path("keys"), &file]);
+    assert_eq!(outcome.exit, Exit::Trouble);
+    let line: Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!(line["file"], file);
+    assert!(line["error"].as_str().unwrap().starts_with(&format!("{file}.sig: ")), "{line}");
+    assert!(outcome.err.contains(&format!("cannot read {file}: {file}.sig: ")), "{}", outcome.err);
+}
+
 #[test]
 fn keys_that_anybody_could_sign_for_are_refused() {
     let line = |key: [u8; 32]| format!("{} x\n", PublicKey(key));

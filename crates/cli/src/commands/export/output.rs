@@ -27,10 +27,10 @@ impl Output<'_> {
             write(&mut Output { to: console.out, path: None })?;
             return Ok(Exit::Success);
         };
-        let mut buffer = BufWriter::new(OutputFile::create(path, arguments.overwrite)?);
+        let mut buffer = BufWriter::new(OutputFile::create(path, arguments.overwrite, &[&arguments.file])?);
         write(&mut Output { to: &mut buffer, path: Some(path) })?;
         let file = buffer.into_inner().map_err(|error| CommandError::write(path)(error.into_error()))?;
-        file.publish()?;
+        file.publish(console)?;
         Ok(Exit::Success)
     }
 

@@ -64,13 +64,19 @@ impl Signers {
         if replay.as_os_str() == tasks::INPUT {
             return Err(CommandError::InputSignatures);
         }
-        let signatures = match sign::read_signatures(&path_beside(replay)) {
+        let beside = path_beside(replay);
+        let signatures = match sign::read_signatures(&beside) {
             Ok(signatures) => signatures,
             Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
                 return Ok(self.signed(Check::default()));
             }
             Err(error @ (CommandError::Line { .. } | CommandError::NoText { .. })) => {
                 return Ok(Signed::malformed(&error));
+            }
+            // The line of the result names the replay.
+            Err(CommandError::Read { error, .. }) => {
+                let why = format!("{}: {error}", beside.display());
+                return Err(CommandError::read(replay)(io::Error::new(error.kind(), why)));
             }
             Err(error) => return Err(error),
         };

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::axis::{Axis, Unit};
 use super::curve::Curve;
+use crate::files::is_misleading;
 
 /// Default width in pixels.
 pub(super) const WIDTH: u32 = 960;
@@ -198,7 +199,7 @@ fn push(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Escapes text for XML. Characters below U+0020, U+FFFE and U+FFFF become U+FFFD.
+/// Escapes text for XML. [Misleading](is_misleading) characters, U+FFFE and U+FFFF become U+FFFD.
 fn escaped(raw: &str) -> String {
     let mut text = String::new();
     for character in raw.chars() {
@@ -206,7 +207,8 @@ fn escaped(raw: &str) -> String {
             '<' => text.push_str("&lt;"),
             '>' => text.push_str("&gt;"),
             '&' => text.push_str("&amp;"),
-            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => text.push('\u{fffd}'),
+            '\u{fffe}' | '\u{ffff}' => text.push('\u{fffd}'),
+            other if is_misleading(other) => text.push('\u{fffd}'),
             other => text.push(other),
         }
     }
