@@ -1,8 +1,9 @@
-//! Impulses whose velocity exceeds the formats.
+//! Impulses and motors whose velocity exceeds the formats.
 
 use lockstep2d::body::BodyDef;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::solver::{JointDef, Motor};
 use lockstep2d::world::Explosion;
 
 use super::{ball, spawn, weightless};
@@ -30,4 +31,15 @@ fn light_debris_flies_away_from_an_explosion() {
     let id = spawn(&mut world, BodyDef::dynamic().position((fx!(1.2), fx!(0.5))), ball(fx!(0.05)));
     world.explode(&Explosion::new(Vec2::ZERO, fx!(500))).expect("valid");
     direction_is(world.body(id).expect("there").velocity(), (fx!(0.923077), fx!(0.384615)));
+}
+
+#[test]
+fn a_motor_pushes_in_the_direction_of_its_velocity() {
+    let mut world = weightless();
+    let wall = spawn(&mut world, BodyDef::fixed(), ball(fx!(0.1)));
+    let id = spawn(&mut world, BodyDef::dynamic().position((fx!(2), fx!(0))), ball(fx!(0.5)));
+    let motor = Motor::new().linear((fx!(2000), fx!(1000)), fx!(10));
+    world.add_joint(&JointDef::new(wall, id, motor)).expect("valid");
+    world.step();
+    direction_is(world.body(id).expect("there").velocity(), (fx!(0.894427), fx!(0.447214)));
 }

@@ -8,6 +8,7 @@ use super::point::{JointPoint, PointTask};
 use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
 use crate::math::{Fx, Vec2, fx_div};
+use crate::solver::limits::SPEED_MAX;
 
 /// Slots of impulses in the state of a joint. A point uses two slots.
 pub(super) mod slot {
@@ -106,7 +107,10 @@ impl Parts<'_> {
 
     pub(super) fn push(&mut self, velocity: Vec2<Fx>, max_force: Fx) {
         let max = crate::math::narrow(self.impulse(max_force));
-        self.point(slot::HOLD, PointTask::Drive { velocity: velocity.narrow(), max });
+        self.point(
+            slot::HOLD,
+            PointTask::Drive { velocity: velocity.shortened(SPEED_MAX.into()).narrow(), max },
+        );
     }
 
     fn row(&mut self, slot: u8, direction: Direction, task: RowTask) {
