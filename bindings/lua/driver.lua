@@ -16,14 +16,17 @@ local function collect()
     end
 end
 
-local function play(new_game, ticks)
+--- `latency(step)` is in steps of `INTERVAL`, 1 by default; `read(seats)` is random by default.
+local function play(new_game, ticks, latency, read, guess)
     local peers, flying = {}, {}
     for index = 1, 2 do
         peers[index] = Driver.new({
             seats = Game.SEATS,
             offer = Game.OFFER,
             contact = index == 2 and "1" or nil,
-            settings = { guess = 6, start_with = Game.SEATS, key = index, check_interval = 1, save_interval = 1 },
+            settings = {
+                guess = guess or 6, start_with = Game.SEATS, key = index, check_interval = 1, save_interval = 1,
+            },
             game = new_game(),
             send = function(to, packet)
                 flying[#flying + 1] = { to = tonumber(to), from = tostring(index), packet = packet }
@@ -31,18 +34,23 @@ local function play(new_game, ticks)
         })
     end
     local random = 1
-    local function read()
+    read = read or function()
         random = (random * 69069 + 1) % 4294967296
         return string.char(math.floor(random / 65536) % 8)
     end
     for step = 0, 100000 do
-        local now, arrived = step * INTERVAL / 1000, flying
+        local now, sent = step * INTERVAL / 1000, flying
         flying = {}
-        for _, each in ipairs(arrived) do
-            peers[each.to]:receive(now, each.from, each.packet)
+        for _, each in ipairs(sent) do
+            each.at = each.at or step - 1 + (latency and latency(step) or 1)
+            if each.at <= step then
+                peers[each.to]:receive(now, each.from, each.packet)
+            else
+                flying[#flying + 1] = each
+            end
         end
         for _, peer in ipairs(peers) do
-            for _, event in ipairs(peer:update(now, read)) do
+            for _, event in ipairs(peer:update(now, function(seats) return read(seats, peer) end)) do
                 assert(event.kind ~= ls.EVENT_DESYNC, "the states differ at tick " .. event.tick)
             end
         end
@@ -66,6 +74,28 @@ play(function()
     end
     return game
 end, 300)
+
+-- Each result of `read` counts for one tick, while the input delay grows and shrinks.
+local results, played = {}, {}
+local function counting()
+    local game = Game.new()
+    local step = game.step
+    function game:step(inputs, absent)
+        played[game] = played[game] or {}
+        table.insert(played[game], inputs:byte(1))
+        return step(self, inputs, absent)
+    end
+    return game
+end
+local peers = play(counting, 900, function(step)
+    return math.floor(step / 1500) % 2 == 0 and 5 or 40
+end, function(_, peer)
+    results[peer] = (results[peer] or -1) + 1
+    return string.char(results[peer] % 8)
+end, 0)
+for tick, input in ipairs(played[peers[1].game]) do
+    assert(input == (tick - 1) % 8, "tick " .. tick .. " has the input " .. input)
+end
 
 -- The hash of the example is alive as long as its variable.
 local game = Game.new()

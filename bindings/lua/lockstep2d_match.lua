@@ -53,6 +53,7 @@ function Driver.new(options)
         send = options.send,
         tick = 0,
         saves = {},
+        unissued = {},
         size = ffi.new("size_t[2]"),
         capacity = tonumber(config.seats * config.input_bytes),
         inputs = ffi.new("uint8_t[?]", config.seats * config.input_bytes),
@@ -72,7 +73,8 @@ function Driver:receive(now, from, packet)
 end
 
 --- Advances the match to the time `now` in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
---- of your own seats as a string; `seats` is their number. Returns a list of events.
+--- of your own seats as a string; `seats` is their number. Each result counts for one tick: forget key presses then.
+--- `read` is called several times while the input delay grows. Returns a list of events.
 function Driver:update(now, read)
     ls.match_update(self.match, now * 1e6)
     local events = {}
@@ -86,9 +88,14 @@ function Driver:update(now, read)
     self:fulfil()
     while self:is_due(now) do
         local seats = self:seat_count()
-        local inputs = seats > 0 and read(seats) or ""
+        -- Inputs that were read and not issued are passed again, so that a key press counts once.
+        local inputs = self.unissued[seats] or (seats > 0 and read(seats) or "")
+        self.unissued = {}
         ls.match_advance(self.match, now * 1e6, inputs, #inputs, self.flag)
         local issued, before = self.flag[0] == 1, self.tick
+        if not issued then
+            self.unissued[seats] = inputs
+        end
         self:fulfil()
         if not issued and self.tick == before then
             break

@@ -1178,14 +1178,16 @@ export class Match extends Handle {
     readonly inputBytes: number;
     /** Sends the request to join to this participant. */
     ask(contact: Uint8Array): void;
-    /** Takes a packet from an address. Foreign packets are ignored. */
+    /** Takes a packet from an address. Foreign packets and those of more than 2048 bytes are ignored. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`. Call it every few milliseconds, and after `receive`. */
     update(now: number): void;
     /** Whether the next tick is due, and the match can take its inputs. */
     isDue(now: number): boolean;
     /** Issues the inputs of your own seats in order, and plays a tick if possible. Returns whether the inputs were
-     * issued. If not, they may be passed again. */
+     * issued. If not, they may be passed again. Inputs that were issued count for one tick: forget key presses then.
+     * While the input delay grows, `isDue` remains true, and further calls ask for the inputs of the additional ticks
+     * before a tick is played. */
     advance(now: number, inputs: Uint8Array): boolean;
     nextRequest(): MatchRequest | undefined;
     /** Passes the hash for a request `checksum`. */
@@ -1243,7 +1245,8 @@ export class MatchDriver<Saved = unknown> {
     readonly sendError: unknown;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
-     * returns the inputs of your own seats in order. Returns the events. For an event `state`, the game has already
+     * returns the inputs of your own seats in order, and each result counts for one tick: forget key presses then. It
+     * is called several times while the input delay grows. Returns the events. For an event `state`, the game has already
      * decoded the state. After an error of the game, every further call throws that error. An error of `readInputs`
      * is thrown once; the next call continues, and returns the events of this one as well. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
@@ -1278,14 +1281,18 @@ export class Relay {
     private constructor();
     /** Enters a room, and creates it if necessary. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
      * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. Node before 22
-     * needs `WebSocket`. If the relay refuses the connection, or does not answer within ten seconds, throws `RELAY`. */
+     * needs `WebSocket`. Throws `RELAY` if the relay refuses the connection or does not answer within ten seconds, or if
+     * the page cannot open the URL, as `ws://` in a page loaded over https. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array | undefined; WebSocket?: unknown }): Promise<Relay>;
     /** Address of this member. */
     readonly own: Uint8Array;
     /** Addresses of the other members, in the order in which they entered. */
     readonly others: Uint8Array[];
-    /** Whether there is a connection. */
+    /** Whether there is a connection. A lost one is opened again, unless `isClosed`. */
     readonly isOpen: boolean;
+    /** Whether the connection has ended for ever: after `close`, or because the same `secret` has entered the room
+     * again, for example in a duplicate of the tab. */
+    readonly isClosed: boolean;
     /** Called with sender and bytes of each packet. */
     onPacket: (from: Uint8Array, packet: Uint8Array) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */

@@ -80,7 +80,8 @@ export class Direct {
         const connection = new RTCPeerConnection(CONFIG);
         const channel = connection.createDataChannel("match", CHANNEL);
         channel.binaryType = "arraybuffer";
-        channel.onmessage = ({ data }) => this.onPacket(address, new Uint8Array(data));
+        // A text is no packet. Converted to a number, it would be the length of an array.
+        channel.onmessage = ({ data }) => data instanceof ArrayBuffer && this.onPacket(address, new Uint8Array(data));
         connection.onicecandidate = ({ candidate }) => candidate && this.#signal(address, { candidate });
         connection.onconnectionstatechange = () => ["failed", "closed"].includes(connection.connectionState) && this.#drop(address);
         const link = { name, address, connection, channel };

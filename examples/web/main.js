@@ -32,9 +32,11 @@ function frame() {
     // A player who has joined late has no inputs of the first ticks, and therefore no replay.
     element("save").disabled = player.recording.broken || player.recording.ticks === 0;
     const others = player.relay.others.length;
-    const line = player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : "no connection to the relay";
+    const broken = player.relay.isClosed ? "this player has entered the room again, in another tab" : "no connection to the relay";
+    const line = player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : broken;
     element("text").textContent = `${status}, seat ${seats.join(" ")}, tick ${tick}, final ${final}\n${line}\n${player.game.hash()}` +
-        (desyncs ? "\nthe states differ" : "");
+        (desyncs ? "\nthe states differ" : "") +
+        (status === "paused" ? "\nwaits for the other player; if the one who opened the match has reloaded the page, leave and open another match" : "");
     status === "closed" || requestAnimationFrame(frame);
 }
 

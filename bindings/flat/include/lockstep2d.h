@@ -68,7 +68,8 @@ typedef uint32_t ls2d_handle;
 #define LS2D_INTERNAL 11
 /* An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed. */
 #define LS2D_BROKEN 12
-/* There are too many objects. */
+/* There are too many objects, or about 4 290 000 000 have been made and handles have run out.
+ * `ls2d_world_save_into` saves without a new handle. */
 #define LS2D_EXHAUSTED 13
 /* The bytes are not a valid encoding of the expected value. */
 #define LS2D_DECODE 14
@@ -1103,7 +1104,7 @@ ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
  * first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
- * those of `base`. */
+ * those of `base`, whose geometry does not matter. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
 /* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Null
@@ -1528,7 +1529,9 @@ ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
 /* Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
  * then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
- * again. Without own seats, `size` is 0. */
+ * again. Inputs that were issued count for one tick: forget key presses then. While the input delay grows,
+ * `ls2d_match_is_due` remains 1, and further calls ask for the inputs of the additional ticks before a tick is
+ * played. Without own seats, `size` is 0. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`, the

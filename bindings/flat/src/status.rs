@@ -50,7 +50,8 @@ statuses! {
     Internal = 11, "LS2D_INTERNAL";
     /// An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed.
     Broken = 12, "LS2D_BROKEN";
-    /// There are too many objects.
+    /// There are too many objects, or about 4 290 000 000 have been made and handles have run out.
+    /// `ls2d_world_save_into` saves without a new handle.
     Exhausted = 13, "LS2D_EXHAUSTED";
     /// The bytes are not a valid encoding of the expected value.
     Decode = 14, "LS2D_DECODE";

@@ -73,6 +73,9 @@ export class Match extends Handle {
     }
 
     receive(now, from, packet) {
+        if (byteArray(packet, "a packet").length > PACKET_MAX) {
+            return;
+        }
         const at = give(packet, 64, "a packet");
         putAddress(at, from);
         call("ls2d_match_receive", this.handle, micros(now), at, from.length, at + 64, packet.length);
@@ -220,6 +223,8 @@ export class MatchDriver {
     #isFinished = false;
     #failure;
     #sendError;
+    // Inputs that were read and not issued. They are passed again, so that a key press counts once.
+    #unissued;
 
     constructor(match, game, send) {
         this.#match = instance(match, Match, "the match");
@@ -289,12 +294,19 @@ export class MatchDriver {
     // the match is as before, and continues with the next inputs.
     #play(now, readInputs) {
         while (this.#match.isDue(now)) {
-            const seats = this.#match.seats;
+            const { seats, inputBytes } = this.#match;
             let issued;
             try {
-                issued = this.#match.advance(now, seats.length === 0 ? new Uint8Array() : readInputs(seats));
+                if (this.#unissued?.length !== seats.length * inputBytes) {
+                    this.#unissued = seats.length === 0 ? new Uint8Array() : readInputs(seats);
+                }
+                issued = this.#match.advance(now, this.#unissued);
             } catch (error) {
+                this.#unissued = undefined;
                 return { error };
+            }
+            if (issued) {
+                this.#unissued = undefined;
             }
             const before = this.#tick;
             this.#fulfil();

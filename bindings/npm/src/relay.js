@@ -22,6 +22,7 @@ const BUFFERED_MAX = 512 * 1024;
 const FINAL = [4000, 4003];
 
 const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
+const unusable = (why) => new Lockstep2dError("RELAY", `the relay cannot be used: ${why}`);
 
 export class Relay {
     #url;
@@ -78,8 +79,18 @@ export class Relay {
         return this.#socket?.readyState === 1;
     }
 
+    get isClosed() {
+        return this.#closed;
+    }
+
     #open() {
-        const socket = new this.#WebSocket(this.#url);
+        let socket;
+        try {
+            socket = new this.#WebSocket(this.#url);
+        } catch (error) {
+            // A bad URL, or ws:// in a page that was loaded over https.
+            throw unusable(error.message);
+        }
         socket.binaryType = "arraybuffer";
         this.#socket = socket;
         this.#entered = false;
@@ -155,7 +166,7 @@ export class Relay {
     #lost(code, reason) {
         this.#socket = undefined;
         if (this.#ready !== undefined) {
-            this.#ready.reject(new Lockstep2dError("RELAY", `the relay cannot be used: ${reason || `code ${code}`}`));
+            this.#ready.reject(unusable(reason || `code ${code}`));
             return;
         }
         if (this.#closed || FINAL.includes(code)) {

@@ -8,6 +8,7 @@ import { L } from "./common.mjs";
 const source = JSON.stringify(new URL("../src/index.js", import.meta.url).href);
 register(`data:text/javascript,${encodeURIComponent(`export const resolve = (name, context, next) =>
     name === "lockstep2d" ? { url: ${source}, shortCircuit: true } : next(name, context);`)}`);
+const { Direct } = await import("../../../examples/web/direct.js");
 const { MatchRecording } = await import("../../../examples/web/recording.js");
 
 /** A match whose first ticks, up to `kept`, are no longer known. */
@@ -31,4 +32,22 @@ test("a recording without the first ticks is broken", () => {
     const recording = new MatchRecording();
     recording.follow(matchOf(90, 5));
     assert.deepEqual([recording.broken, recording.ticks], [true, 0]);
+});
+
+test("a text in a data channel is no packet", () => {
+    const channel = {};
+    globalThis.RTCPeerConnection = class {
+        createDataChannel() {
+            return channel;
+        }
+        setLocalDescription() {}
+    };
+    const relay = { own: Uint8Array.of(1), others: [Uint8Array.of(2)], send() {} };
+    const direct = new Direct(relay);
+    const sizes = [];
+    direct.onPacket = (from, { length }) => sizes.push(length);
+    direct.enable();
+    channel.onmessage({ data: "2000" });
+    channel.onmessage({ data: Uint8Array.of(1, 2, 3).buffer });
+    assert.deepEqual(sizes, [3]);
 });

@@ -1,6 +1,7 @@
 // Peers on a network that drops and delays packets have equal states, also if they join late.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { library } from "../src/library.js";
 import { L } from "./common.mjs";
 
 const address = (index) => Uint8Array.of(index);
@@ -44,6 +45,7 @@ class Push {
 
 class Net {
     now = 0;
+    latency = 20;
     peers = [];
     flying = [];
     random = new L.Random(3);
@@ -56,7 +58,7 @@ class Net {
                 throw this.failure;
             }
             if (this.random.below(100) >= 5) {
-                this.flying.push({ at: this.now + 20 + this.random.below(40), from: index, to: to[0], packet });
+                this.flying.push({ at: this.now + this.latency + this.random.below(40), from: index, to: to[0], packet });
             }
         };
         const game = new Push();
@@ -74,7 +76,7 @@ class Net {
             }
             for (const peer of this.peers) {
                 const input = () => Uint8Array.of(((this.now >> 7) + peer.index * 3) % 8);
-                peer.events.push(...peer.driver.update(this.now, input));
+                peer.events.push(...peer.driver.update(this.now, peer.input ?? input));
             }
         }
     }
@@ -103,6 +105,30 @@ test("two peers and one who joins late have equal states", () => {
     assert.deepEqual(peers.map(({ game }) => game.hash()), [hash, hash, hash]);
     assert.ok(peers.every(({ events }) => events.every(({ kind }) => kind !== "desync")));
     assert.ok(host.game.played > 400, "some ticks were guessed wrongly and played again");
+});
+
+test("an oversized packet takes no memory", () => {
+    const match = new L.Match({ seats: 2 });
+    const size = () => library().memory.buffer.byteLength;
+    const before = size();
+    match.receive(0, address(1), new Uint8Array(1 << 25));
+    assert.equal(size(), before);
+    assert.throws(() => match.receive(0, address(1), "packet"), { code: "VALUE" });
+});
+
+test("each result of `readInputs` counts for one tick, while the input delay grows and shrinks", () => {
+    const net = new Net();
+    const [host] = [net.add({ startWith: 2, guess: 0 }), net.add({ guess: 0, contact: address(0) })];
+    let read = 0;
+    const played = [];
+    host.input = () => Uint8Array.of(read++ % 256);
+    host.game.step = (inputs) => played.push(inputs[0]);
+    for (const latency of [20, 150, 20, 150, 20]) {
+        net.latency = latency;
+        net.run(6000);
+    }
+    assert.ok(played.length > 600, `${played.length} ticks`);
+    assert.deepEqual(played, played.map((_, tick) => tick % 256));
 });
 
 test("a peer with another offer is refused", () => {

@@ -125,3 +125,24 @@ test("a relay that does not answer cannot be entered", async (t) => {
     pass(60);
     assert.deepEqual(Socket.all.map(({ readyState }) => readyState), [2]);
 });
+
+test("an address that the page cannot open is an error of the relay", async () => {
+    class Refusing {
+        constructor() {
+            throw new DOMException("insecure", "SecurityError");
+        }
+    }
+    await assert.rejects(L.Relay.connect("ws://relay.example", "ABCD", { WebSocket: Refusing }), { code: "RELAY", message: /insecure/ });
+});
+
+test("a member that has entered elsewhere is closed", async (t) => {
+    const pass = clock(t);
+    const { relay, socket } = await enter();
+    assert.equal(relay.isClosed, false);
+    socket.onclose({ code: 1006, reason: "" });
+    assert.deepEqual([relay.isOpen, relay.isClosed], [false, false]);
+    pass(1);
+    Socket.all.at(-1).enter();
+    Socket.all.at(-1).onclose({ code: 4003, reason: "" });
+    assert.deepEqual([relay.isOpen, relay.isClosed], [false, true]);
+});

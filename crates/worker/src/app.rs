@@ -178,6 +178,9 @@ pub(crate) struct WorkArguments {
     /// Seconds without a sign of progress after which a job goes to another worker
     #[arg(long, value_name = "N", default_value = "30", value_parser = seconds)]
     pub(crate) ack_seconds: Duration,
+    /// Seconds after which reading a file has failed; it is tried again in another delivery
+    #[arg(long, value_name = "N", default_value = "300", value_parser = seconds)]
+    pub(crate) read_seconds: Duration,
     /// Seconds after a signal in which the file at work may be completed; then, or after a second signal, it goes back
     /// to the queue
     #[arg(long, value_name = "N", default_value = "20", value_parser = seconds)]

@@ -117,7 +117,7 @@ fn blake3_of(path: &Path) -> Result<String, WorkerError> {
 
 /// Adds a file to the object store, unless the store already has it.
 async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), WorkerError> {
-    if store.info(blake3).await.is_ok() {
+    if store.info(blake3).await.is_ok_and(|info| !info.deleted) {
         return Ok(());
     }
     let bytes = std::fs::read(path).map_err(WorkerError::read(path))?;

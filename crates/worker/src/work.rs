@@ -50,8 +50,11 @@ struct Work<G: Game + 'static> {
     store: ObjectStore,
     bucket: Option<Bucket>,
     max_deliver: u64,
+    /// Longest time to read a file.
+    read_max: Duration,
     /// Interval between progress messages to the server.
     progress: Duration,
+    shutdown: Shutdown,
     metrics: Arc<Metrics>,
 }
 
@@ -84,12 +87,6 @@ pub(crate) async fn run<G: Game + 'static>(
         started = start => started?,
         () = shutdown.reached(Phase::Draining) => return Ok(()),
     };
-    let at_stop = (Arc::clone(&judge), shutdown.clone());
-    tokio::spawn(async move {
-        let (judge, mut shutdown) = at_stop;
-        shutdown.reached(Phase::Stopping).await;
-        judge.stop();
-    });
     let work = Work {
         queue,
         judge,
@@ -97,7 +94,9 @@ pub(crate) async fn run<G: Game + 'static>(
         store,
         bucket,
         max_deliver: arguments.max_deliver.into(),
+        read_max: arguments.read_seconds,
         progress: arguments.ack_seconds / 3,
+        shutdown: shutdown.clone(),
         metrics,
     };
     let mut outage = Outage::default();
@@ -184,11 +183,16 @@ impl<G: Game + 'static> Work<G> {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
         }
+        let mut shutdown = self.shutdown.clone();
         let verify = self.verify(job, digest, delivered);
         tokio::pin!(verify);
         loop {
             tokio::select! {
                 done = &mut verify => return done,
+                () = shutdown.reached(Phase::Stopping) => {
+                    self.judge.stop();
+                    return Done::Again(Duration::ZERO);
+                }
                 () = tokio::time::sleep(self.progress) => {
                     // If this message is lost, another worker may verify the file, too. The server refuses the later
                     // result.
@@ -199,7 +203,8 @@ impl<G: Game + 'static> Work<G> {
     }
 
     async fn verify(&self, job: &Job, digest: [u8; 32], delivered: u64) -> Done {
-        let bytes = match self.read(job).await {
+        let read = tokio::time::timeout(self.read_max, self.read(job)).await;
+        let bytes = match read.unwrap_or_else(|_| Err(self.too_slow())) {
             Ok(bytes) => bytes,
             Err(error) if delivered >= self.max_deliver => return Done::Result(unread(job, &error)),
             Err(_) => return Done::Again(READ_AGAIN * u32::try_from(delivered).unwrap_or(u32::MAX)),
@@ -207,8 +212,11 @@ impl<G: Game + 'static> Work<G> {
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
         // Results are matched with files by the digest, and only the beginning of a large file has been read.
         let judged = tokio::task::spawn_blocking(move || judge.judge_part(&file, &bytes, &digest)).await;
-        // If a signal has stopped the verification, the job goes back to the queue without a pause.
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
+    }
+
+    fn too_slow(&self) -> io::Error {
+        io::Error::other(format!("the file was not read within {} s", self.read_max.as_secs()))
     }
 
     async fn read(&self, job: &Job) -> io::Result<Vec<u8>> {

@@ -6,7 +6,7 @@ use lockstep2d::math::{Fx, Vec2};
 use crate::border::{In, Out};
 use crate::describe::api;
 use crate::numbers::{RawFx, RawVec2};
-use crate::records::{RawBodyDef, RawJointDef, RawShapeDef, body_kind};
+use crate::records::{CIRCLE, LINK_FLAGS, RawBodyDef, RawJointDef, RawShapeDef, body_kind};
 use crate::status::Outcome;
 
 /// Largest number of shapes in one call.
@@ -42,7 +42,7 @@ api! {
 
     /// Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
     /// first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
-    /// those of `base`.
+    /// those of `base`, whose geometry does not matter.
     fn ls2d_chain_links(
         base: In<'_, RawShapeDef>,
         points: In<'_, RawVec2>,
@@ -67,8 +67,8 @@ api! {
             chain = chain.one_sided();
         }
         let made = chain.links()?;
-        // The geometry of the base does not matter.
-        base = RawShapeDef { kind: crate::records::CIRCLE, radius: RawFx::of(Fx::ONE), ..base };
+        let flags = base.flags & !LINK_FLAGS;
+        base = RawShapeDef { kind: CIRCLE, radius: RawFx::of(Fx::ONE), flags, ..base };
         let base = base.def()?;
         let with_base = |link: &ShapeDef| RawShapeDef::of(&ShapeDef { geometry: link.geometry, ..base });
         let made: Vec<RawShapeDef> = made.iter().map(with_base).collect();

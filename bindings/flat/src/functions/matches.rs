@@ -192,7 +192,9 @@ api! {
 
     /// Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
     /// then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
-    /// again. Without own seats, `size` is 0.
+    /// again. Inputs that were issued count for one tick: forget key presses then. While the input delay grows,
+    /// `ls2d_match_is_due` remains 1, and further calls ask for the inputs of the additional ticks before a tick is
+    /// played. Without own seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         with(handle, |game: &mut Match| {

@@ -2,6 +2,7 @@
 
 use lockstep2d::body::{Geometry, MassProperties, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::Fx;
 use lockstep2d::world::{BodyPose, Command};
 use lockstep2d::{codec, fx};
 use lockstep2d_scenes::{ALL, Scene};
@@ -294,4 +295,20 @@ fn the_mass_of_shapes_is_that_in_rust() {
     assert_eq!((centre.x, centre.y), (bits(expected.centre_of_mass().x), bits(expected.centre_of_mass().y)));
     let none = ls2d_shapes_mass(In::null(), 0, Out::null(), Out::null(), Out::null());
     assert_ne!(none, Status::Ok as i32, "no mass");
+}
+
+#[test]
+fn a_chain_takes_the_properties_of_a_link() {
+    let points = [0, 1, 2].map(|x| RawVec2 { x: RawFx::of(Fx::from_num(x)), y: RawFx::of(fx!(0)) });
+    let chain = |base: &RawShapeDef| {
+        let (mut links, mut count) = ([*base; 2], 0);
+        let (made, counted) = (Out::all(&mut links), Out::of(&mut count));
+        done(ls2d_chain_links(In::of(base), In::all(&points), points.len(), 0, 1, made, 2, counted));
+        links
+    };
+    let mut base = RawShapeDef::of(&ShapeDef::new(Geometry::circle(fx!(1)).unwrap()).sensor());
+    let links = chain(&base);
+    base = links[0];
+    assert_eq!(base.kind, LINK);
+    assert_eq!(chain(&base), links);
 }

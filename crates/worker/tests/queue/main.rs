@@ -6,6 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
 mod bucket;
+mod objects;
 mod server;
 
 use std::fs;
@@ -88,6 +89,15 @@ fn verified(folder: &Folder) -> Vec<String> {
 fn worker(server: &Server, folder: &Folder) -> Program {
     let path = PathBuf::from(env!("CARGO_BIN_EXE_lockstep2d-worker"));
     Program { path, url: server.url(), folder: folder.0.clone(), variables: Vec::new() }
+}
+
+/// Answer of the metrics of a worker. Empty if it does not listen yet.
+fn get(address: &str, path: &str) -> String {
+    let Ok(mut stream) = TcpStream::connect(address) else { return String::new() };
+    write!(stream, "GET {path} HTTP/1.1\r\n\r\n").unwrap();
+    let mut text = String::new();
+    stream.read_to_string(&mut text).unwrap();
+    text
 }
 
 fn files() -> u64 {
@@ -236,13 +246,7 @@ fn files_of_the_object_store_and_metrics() {
     wait_until("all results are there", || away.results().len() == 12);
     assert_eq!(away.results(), expected);
 
-    let get = |path: &str| {
-        let mut stream = TcpStream::connect(&address).unwrap();
-        write!(stream, "GET {path} HTTP/1.1\r\n\r\n").unwrap();
-        let mut text = String::new();
-        stream.read_to_string(&mut text).unwrap();
-        text
-    };
+    let get = |path: &str| get(&address, path);
     // A worker counts a result only after adding it, so the last one may not be counted yet.
     let counted = "lockstep2d_worker_results_total{verdict=\"match\"} ";
     let matches = expected.iter().filter(|line| line.contains("\"verdict\":\"match\"")).count();

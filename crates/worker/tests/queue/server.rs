@@ -27,9 +27,14 @@ impl Process {
         self.0.wait().unwrap();
     }
 
+    /// Sends SIGTERM.
+    pub(crate) fn signal(&self) {
+        assert!(Command::new("kill").arg(self.0.id().to_string()).status().unwrap().success());
+    }
+
     /// Ends the process by SIGTERM, and returns its exit code.
     pub(crate) fn terminate(&mut self) -> Option<i32> {
-        assert!(Command::new("kill").arg(self.0.id().to_string()).status().unwrap().success());
+        self.signal();
         self.0.wait().unwrap().code()
     }
 }
