@@ -43,12 +43,12 @@ fn a_box_tips_over_on_ground_of_any_length() {
 fn a_line_across_the_world_has_one_normal() {
     let link =
         Chain::new(&[(-EDGE, -EDGE), (EDGE, EDGE)].map(|(x, y)| Vec2::new(x, y))).links().expect("valid");
-    let lines = [line((-EDGE, -EDGE), (EDGE, EDGE)), link[0].clone()];
+    let lines = [line((-EDGE, -EDGE), (EDGE, EDGE)), link[0]];
     let cases = lines.iter().flat_map(|line| [0, 30, 45, 80, 135, 250].map(|degrees| (line, degrees)));
     for (line, degrees) in cases {
         let mut world = weightless();
         let wall = BodyDef::fixed().angle(Angle::from_degrees(Fx::from_num(degrees)));
-        spawn(&mut world, wall, line.clone());
+        spawn(&mut world, wall, *line);
         let direction = Angle::from_degrees(Fx::from_num(degrees + 45)).direction().widen();
         let normal = direction.perp();
         for along in [fx!(0), fx!(-1000), fx!(7000000), fx!(1070000000), fx!(-1070000000)] {
