@@ -8,7 +8,8 @@ use crate::game::LockstepGame;
 ///
 /// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
 /// that are down. A *once* input replaces the held input for the next played tick alone: a jump, a list of commands. So
-/// a press counts once.
+/// a press counts once. During a pause it waits for the next tick. In a replay, for a spectator and after an error, it is
+/// removed in the same frame; when another game begins, before the systems of that set run.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;
@@ -19,6 +20,8 @@ use crate::game::LockstepGame;
 #[derive(Resource)]
 pub struct Inputs<G: LockstepGame> {
     seats: Vec<Seat<G::Input>>,
+    /// Number of the game for which the inputs are: see `Lockstep::number`.
+    game: Option<u64>,
 }
 
 struct Seat<I> {
@@ -34,7 +37,7 @@ impl<I: Default> Default for Seat<I> {
 
 impl<G: LockstepGame> Default for Inputs<G> {
     fn default() -> Self {
-        Inputs { seats: Vec::new() }
+        Inputs { seats: Vec::new(), game: None }
     }
 }
 
@@ -76,7 +79,14 @@ impl<G: LockstepGame> Inputs<G> {
         (0..players).map(of).collect()
     }
 
-    /// Notes that the inputs of [`Inputs::next`] have been used.
+    /// Sets the game for which the inputs are. Removes `once` inputs that a former game has not used.
+    pub(crate) fn begin_game(&mut self, number: u64) {
+        if self.game.replace(number).is_some_and(|former| former != number) {
+            self.used();
+        }
+    }
+
+    /// Notes that the inputs of [`Inputs::next`] have been used, or that nobody can use them.
     pub(crate) fn used(&mut self) {
         for seat in &mut self.seats {
             seat.once = None;

@@ -286,11 +286,14 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
-        if self.failure.is_some() {
-            return Ok(());
+        let mut result = Ok(());
+        if self.failure.is_none() {
+            result = self.run_singly(inputs).and_then(|()| self.driver.run(time, self.is_paused, inputs));
+            self.failure = result.clone().err();
         }
-        let result = self.run_singly(inputs).and_then(|()| self.driver.run(time, self.is_paused, inputs));
-        self.failure = result.clone().err();
+        if self.failure.is_some() || self.seats().is_empty() {
+            inputs.used();
+        }
         result
     }
 

@@ -86,9 +86,10 @@ impl<G: Game> Game for Observed<G> {
     }
 
     fn load(&mut self, save: &Self::Save) {
+        let left = self.log().leave(self.game.world());
         self.game.load(&save.save);
         let (game, log) = self.log_mut();
-        log.loaded(save.stamp, game.world());
+        log.loaded(save.stamp, game.world(), left);
     }
 
     fn work(&self, inputs: &[G::Input]) -> u64 {

@@ -14,7 +14,7 @@ use crate::events::{ConfirmedEvent, MatchEvent, PredictedEvent, RetractedEvent};
 use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
-use crate::systems::{clear_status, remove_views, send_events, step, write_views};
+use crate::systems::{begin_inputs, clear_status, remove_views, send_events, step, write_views};
 use crate::views::{BodyView, BodyViews};
 
 /// Plays the resource [`Lockstep<G>`] while there is one, shows its bodies as views, and sends its events. An app can
@@ -138,6 +138,10 @@ impl<G: LockstepGame> Plugin for LockstepPlugin<G> {
             .add_systems(
                 RunFixedMainLoop,
                 (
+                    begin_inputs::<G>
+                        .in_set(RunFixedMainLoopSystems::FixedMainLoop)
+                        .before(InputSystems)
+                        .run_if(resource_exists::<Lockstep<G>>),
                     step::<G>.in_set(Step).run_if(resource_exists::<Lockstep<G>>),
                     clear_status.in_set(Step).run_if(not(resource_exists::<Lockstep<G>>)),
                     (

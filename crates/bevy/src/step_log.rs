@@ -3,13 +3,14 @@
 //! Drivers load states and play ticks again in any order. The game itself fills the log, so views and events do not
 //! depend on the driver.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use lockstep2d::body::BodyId;
 use lockstep2d::world::World;
 
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
+use crate::views::Identity;
 
 /// A tick, as a number of ticks since the start of an epoch. A new epoch begins after a seek, and when a loaded state
 /// is from an earlier epoch or was decoded from bytes. The tick at the start of an epoch may be unknown until the
@@ -33,6 +34,13 @@ struct Withdrawn {
     event: LoggedEvent,
     /// Tick of the [`PredictedEvent`](crate::PredictedEvent).
     announced: u64,
+}
+
+/// What a body was at some tick.
+#[derive(Debug)]
+pub(crate) struct Shown {
+    at: Stamp,
+    pub(crate) identity: Identity,
 }
 
 /// A position to return to: see [`StepLog::return_to`].
@@ -61,8 +69,9 @@ pub(crate) struct StepLog {
     shown: Option<Stamp>,
     /// Poses of the tick `shown`, if it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies whose ids may now belong to other bodies: those that a loaded state lacks, and those from before a seek.
-    pub(crate) missing: Vec<BodyId>,
+    /// Shown bodies whose ids may now belong to other bodies: those that a loaded state lacks, and those from before a
+    /// seek.
+    pub(crate) missing: BTreeMap<BodyId, Shown>,
     /// Number of ticks played since the last frame, including repeated ones.
     pub(crate) stepped: u32,
     /// Largest number of ticks that a load went back since the last frame.
@@ -113,6 +122,9 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
+        // A body that is the same in the tick of its identity keeps its view, whatever changes in later ticks.
+        let (now, is_same) = (self.stamp(), |body, shown: &Shown| shown.identity.is_of(world, body));
+        self.missing.retain(|body, shown| shown.at != now || !is_same(*body, shown));
         // A game need not step its world in every tick, for example in a pause between rounds.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
@@ -125,8 +137,16 @@ impl StepLog {
         });
     }
 
+    /// Must be called before a load or a seek, for [`StepLog::loaded`] or [`StepLog::relocate`].
+    pub(crate) fn leave(&self, world: Option<&World>) -> Vec<(BodyId, Shown)> {
+        let is_recorded = self.suspended_at.is_none() && !self.is_after_stale;
+        let Some(world) = world.filter(|_| is_recorded) else { return Vec::new() };
+        let shown = |body| Some((body, Shown { at: self.stamp(), identity: Identity::of(world, body)? }));
+        world.bodies().filter_map(|(body, _)| shown(body)).collect()
+    }
+
     /// Must be called after a load. `stamp` is `None` if the state was decoded from bytes.
-    pub(crate) fn loaded(&mut self, stamp: Option<Stamp>, world: Option<&World>) {
+    pub(crate) fn loaded(&mut self, stamp: Option<Stamp>, world: Option<&World>, left: Vec<(BodyId, Shown)>) {
         let known = stamp.filter(|stamp| stamp.epoch == self.epoch);
         let back = match known {
             Some(stamp) => self.ticks.saturating_sub(stamp.ticks),
@@ -141,11 +161,16 @@ impl StepLog {
             let last = self.pending.pop_back();
             self.withdrawn.extend(last.and_then(Entry::withdrawn));
         }
-        if !self.is_after_stale {
-            let exists = |body| world.is_some_and(|world| world.body(body).is_some());
-            self.missing.extend(self.after.iter().map(|(body, _)| body).filter(|body| !exists(*body)));
-        }
+        let exists = |body| world.is_some_and(|world| world.body(body).is_some());
+        self.miss(left.into_iter().filter(|(body, _)| !exists(*body)));
         self.is_after_stale = true;
+    }
+
+    fn miss(&mut self, bodies: impl IntoIterator<Item = (BodyId, Shown)>) {
+        for (body, shown) in bodies {
+            // Of several bodies with one id since the last frame, the first one is shown.
+            self.missing.entry(body).or_insert(shown);
+        }
     }
 
     /// Begins an epoch at a loaded state. Returns 0, because this load does not count as a rollback.
@@ -204,13 +229,13 @@ impl StepLog {
     }
 
     /// Continues at another tick, without events. Views jump there.
-    pub(crate) fn relocate(&mut self, tick: u64, world: Option<&World>) {
+    pub(crate) fn relocate(&mut self, tick: u64, world: Option<&World>, left: Vec<(BodyId, Shown)>) {
         self.suspended_at = None;
         self.bases.push(Some(tick));
         (self.epoch, self.ticks) = (u32::try_from(self.bases.len() - 1).unwrap_or(u32::MAX), 0);
         self.pending.clear();
         self.withdrawn.clear();
-        self.missing.extend(self.after.iter().map(|(body, _)| body));
+        self.miss(left);
         self.refresh(world);
     }
 
@@ -262,5 +287,31 @@ impl StepLog {
         let count = self.pending.iter().take_while(|entry| is_final(entry)).count();
         let taken = self.pending.drain(..count);
         taken.map(|entry| LoggedEvent { tick: base + entry.event.tick, ..entry.event }).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lockstep2d::body::BodyDef;
+    use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+    use lockstep2d::world::Command;
+
+    use crate::observed::Observed;
+
+    #[test]
+    fn a_body_that_changes_in_every_tick_is_the_same_after_a_rollback() {
+        let mut game = Observed::<Sandbox>::new(&SandboxSetup::default()).unwrap();
+        let start = game.save();
+        game.step(&[vec![Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] }]]);
+        let body = game.world().unwrap().bodies().next().unwrap().0;
+        let change = |user_data| [vec![Command::SetUserData { body, user_data }]];
+        game.step(&change(2));
+        for (third, strangers) in [(9, 0), (8, 1)] {
+            game.load(&start);
+            game.step(&[vec![Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] }]]);
+            game.step(&change(2));
+            game.step(&change(third));
+            assert_eq!(game.log().missing.len(), strangers);
+        }
     }
 }

@@ -20,7 +20,12 @@ use crate::plugin::{LockstepSettings, LockstepStatus};
 use crate::poses::Pose;
 use crate::smoothing::{DrawnPose, Offset, metres};
 use crate::step_log::StepLog;
-use crate::views::{BodyView, BodyViews, View, identity_of};
+use crate::views::{BodyView, BodyViews, View};
+
+/// Removes inputs that were meant for a former game.
+pub(crate) fn begin_inputs<G: LockstepGame>(lockstep: Res<Lockstep<G>>, mut inputs: ResMut<Inputs<G>>) {
+    inputs.begin_game(lockstep.number());
+}
 
 pub(crate) fn step<G: LockstepGame>(
     mut lockstep: ResMut<Lockstep<G>>,
@@ -103,9 +108,8 @@ pub(crate) fn write_views<G: LockstepGame>(
 
 /// Despawns views of bodies that a rollback or a seek has replaced under the same ids.
 fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepLog, world: Option<&World>) {
-    for &body in &log.missing {
-        let is_same = |view: &View| view.identity == identity_of(world, body);
-        if views.view(body).is_some_and(|view| !is_same(view))
+    for (&body, shown) in &log.missing {
+        if !shown.identity.is_of(world, body)
             && let Some(entity) = views.take(body)
         {
             commands.entity(entity).try_despawn();
@@ -132,7 +136,7 @@ fn follow(
             .get(&body)
             .copied()
             .unwrap_or_else(|| spawn_view(commands, body, current, settings.pixels_per_metre));
-        if let Some(old) = views.insert(body, entity, current, identity_of(world, body)) {
+        if let Some(old) = views.insert(body, entity, current) {
             commands.entity(old).try_despawn();
         }
     }

@@ -1,8 +1,7 @@
 //! [`BodyView`] and [`BodyViews`]: the entities that show bodies.
 
 use bevy::prelude::{Component, Entity, Reflect, ReflectComponent, Resource, Transform};
-use lockstep2d::body::{BodyId, ShapeId};
-use lockstep2d::hash::StateHash;
+use lockstep2d::body::{BodyId, BodyKind, ShapeDef, ShapeId};
 use lockstep2d::world::World;
 
 use crate::poses::Pose;
@@ -62,8 +61,6 @@ pub(crate) struct View {
     pub(crate) offset: Offset,
     /// Whether the `Transform` already shows `current`.
     pub(crate) is_settled: bool,
-    /// Distinguishes the body from another one with the same id.
-    pub(crate) identity: StateHash,
     frame: u32,
 }
 
@@ -118,13 +115,7 @@ impl BodyViews {
     }
 
     /// Adds a view. Returns the view that had the slot before.
-    pub(crate) fn insert(
-        &mut self,
-        body: BodyId,
-        entity: Entity,
-        pose: Pose,
-        identity: StateHash,
-    ) -> Option<Entity> {
+    pub(crate) fn insert(&mut self, body: BodyId, entity: Entity, pose: Pose) -> Option<Entity> {
         let slot = body.index() as usize;
         if self.slots.len() <= slot {
             self.slots.resize(slot + 1, None);
@@ -136,7 +127,6 @@ impl BodyViews {
             current: pose,
             offset: Offset::ZERO,
             is_settled: false,
-            identity,
             frame: self.frame,
         };
         self.slots.get_mut(slot)?.replace(view).map(|old| old.entity)
@@ -161,11 +151,23 @@ impl BodyViews {
     }
 }
 
-/// Hash that distinguishes bodies of the same id after a rollback: kind, user data, shapes.
-pub(crate) fn identity_of(world: Option<&World>, body: BodyId) -> StateHash {
-    let Some((world, state)) = world.and_then(|world| Some((world, world.body(body)?))) else {
-        return StateHash(0);
-    };
-    let shapes = state.shapes().iter().filter_map(|shape| world.shape(*shape)).map(|shape| shape.def());
-    StateHash::of(&(state.kind(), state.user_data(), shapes.collect::<Vec<_>>()))
+/// Distinguishes bodies of the same id after a rollback or a seek.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Identity {
+    kind: BodyKind,
+    user_data: u64,
+    shapes: Vec<ShapeDef>,
+}
+
+impl Identity {
+    pub(crate) fn of(world: &World, body: BodyId) -> Option<Self> {
+        let state = world.body(body)?;
+        let shapes = state.shapes().iter().filter_map(|shape| world.shape(*shape));
+        let shapes = shapes.map(|shape| *shape.def()).collect();
+        Some(Identity { kind: state.kind(), user_data: state.user_data(), shapes })
+    }
+
+    pub(crate) fn is_of(&self, world: Option<&World>, body: BodyId) -> bool {
+        world.and_then(|world| Self::of(world, body)).is_some_and(|found| found == *self)
+    }
 }

@@ -176,6 +176,23 @@ fn an_input_given_once_counts_once() {
 }
 
 #[test]
+fn an_input_given_once_is_not_used_by_the_next_game() {
+    let mut app = app(local(), 1, TICK);
+    app.update();
+    app.world_mut().resource_mut::<Lockstep<Arena>>().pause();
+    *app.world_mut().resource_mut::<Inputs<Arena>>().once(0) = arena::SHOOT;
+    app.update();
+    let mut inputs = app.world_mut().resource_mut::<Inputs<Arena>>();
+    assert_eq!(*inputs.once(0), arena::SHOOT, "it waits for the end of the pause");
+    app.insert_resource(local());
+    app.update();
+    let (game, _) = reference(tick(&app), |tick| [pad_at(1, tick), pad_at(2, tick)]);
+    assert_eq!(tick(&app), 1);
+    let lockstep = app.world().resource::<Lockstep<Arena>>();
+    assert_eq!(lockstep.game().state_hash(), game.state_hash());
+}
+
+#[test]
 fn views_are_drawn_between_two_ticks() {
     let mut app = app(local(), 1, TICK / 2);
     app.insert_resource(LockstepSettings { pixels_per_metre: 1.0, ..LockstepSettings::default() });

@@ -48,6 +48,38 @@ fn a_replay_seeks_and_its_views_follow() {
 }
 
 #[test]
+fn a_seek_keeps_the_views_of_unchanged_bodies() {
+    let game = Lockstep::<Arena>::replay(recorded(300), &Limits::default()).unwrap();
+    let mut app = app(game, 0, TICK);
+    let views = |app: &App| app.world().resource::<BodyViews>().iter().collect::<Vec<_>>();
+    app.update();
+    let quiet = views(&app).len();
+    while views(&app).len() < quiet + 3 {
+        app.update();
+    }
+    app.update();
+    let before = views(&app);
+    let mut lockstep = app.world_mut().resource_mut::<Lockstep<Arena>>();
+    lockstep.pause();
+    let tick = lockstep.tick();
+    // Between two frames, the shots disappear and return.
+    lockstep.seek(0).unwrap();
+    lockstep.seek(tick).unwrap();
+    app.update();
+    assert_eq!(views(&app), before);
+}
+
+#[test]
+fn a_replay_uses_up_inputs() {
+    let game = Lockstep::<Arena>::replay(recorded(30), &Limits::default()).unwrap();
+    let mut app = app(game, 0, TICK);
+    *app.world_mut().resource_mut::<Inputs<Arena>>().once(0) = u8::MAX;
+    app.update();
+    let mut inputs = app.world_mut().resource_mut::<Inputs<Arena>>();
+    assert_ne!(*inputs.once(0), u8::MAX);
+}
+
+#[test]
 fn other_bytes_are_refused() {
     assert!(matches!(
         Lockstep::<Arena>::replay(vec![0; 100], &Limits::default()),

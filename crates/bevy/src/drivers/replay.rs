@@ -60,11 +60,12 @@ impl<G: LockstepGame> ReplayDriver<G> {
 
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
         self.film.with_timeline_mut(|timeline| {
+            let left = timeline.game().log().leave(timeline.game().world());
             timeline.game().log().suspend();
             // An error may leave the game at another tick than the requested one.
             let sought = timeline.seek(tick);
             let game = timeline.game();
-            game.log().relocate(timeline.tick(), game.world());
+            game.log().relocate(timeline.tick(), game.world(), left);
             Ok(sought?)
         })
     }

@@ -107,6 +107,10 @@ impl Game for Arena {
         for (player, pad) in inputs.iter().take(2).enumerate() {
             let _ = self.act(player, *pad);
         }
+        // The user data of a shot changes in every tick.
+        for (shot, end) in &self.shots {
+            let _ = self.world.set_user_data(*shot, end - now);
+        }
         self.world.step();
     }
 
