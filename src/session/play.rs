@@ -181,7 +181,7 @@ impl Session {
         if !self.is_due(now) {
             return Ok(false);
         }
-        let issued = self.issue(inputs);
+        let issued = self.issues() && self.issue(inputs);
         if issued {
             self.outbox.urgent = true;
             self.settle();
