@@ -129,10 +129,14 @@ impl StepLog {
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
-            let same = withdrawn.iter().position(|other| {
-                other.event.is_alike(&event) && other.event.tick.abs_diff(event.tick) <= SAME_EVENT_TICKS
-            });
-            let announced = same.map(|place| withdrawn.remove(place).announced);
+            // Of several alike events, the nearest one is the same, and of two with one distance the older one.
+            let distance = |other: &Withdrawn| other.event.tick.abs_diff(event.tick);
+            let alike = withdrawn
+                .iter()
+                .enumerate()
+                .filter(|(_, other)| other.event.is_alike(&event) && distance(other) <= SAME_EVENT_TICKS);
+            let same = alike.min_by_key(|(_, other)| (distance(other), other.event.tick));
+            let announced = same.map(|(place, _)| place).map(|place| withdrawn.remove(place).announced);
             pending.push_back(Entry { event, announced });
         });
     }

@@ -16,7 +16,16 @@ const CLICK: f32 = 4.0;
 pub(super) struct Pointer {
     pub(super) at: [f32; 2],
     doing: Doing,
+    /// The button that began [`Self::doing`]. Other buttons have no effect until it is released.
+    button: Option<Button>,
     shift: bool,
+}
+
+impl Pointer {
+    /// Ends what the pointer does without an effect.
+    pub(super) fn cease(&mut self) {
+        (self.doing, self.button) = (Doing::Nothing, None);
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,7 +58,7 @@ impl App {
             Event::Released(key) => self.pointer.shift &= key != Key::Shift,
             Event::Moved(at) => self.move_to(at),
             Event::Down(button) => self.down(button),
-            Event::Up(_) => self.up(),
+            Event::Up(button) => self.up(button),
             Event::Wheel(notches) => self.turn(notches),
             Event::Dropped { name, bytes } => {
                 // Both functions show their errors as messages, so the results are not needed.
@@ -126,8 +135,12 @@ impl App {
         let App { source: Some(source), view, hand, size, pointer, inspector, layer_list, .. } = self else {
             return;
         };
+        if pointer.button.is_some_and(|other| other != button) {
+            return;
+        }
+        pointer.cease();
         if button == Button::Left && Bar::new(*size, source.as_ref()).holds(at) {
-            pointer.doing = Doing::Scrubbing;
+            (pointer.doing, pointer.button) = (Doing::Scrubbing, Some(button));
             return self.scrub();
         }
         if inspector.holds(at, *size) {
@@ -141,6 +154,7 @@ impl App {
             let world = source.world();
             body_at(world, &camera, at).is_some_and(|id| world.body(id).is_some_and(|body| body.is_dynamic()))
         };
+        pointer.button = Some(button);
         pointer.doing = match button {
             Button::Left if source.playground().is_some() && movable(source.as_mut()) => Doing::Dragging(at),
             Button::Left => Doing::Pressing(at),
@@ -174,8 +188,12 @@ impl App {
         }
     }
 
-    fn up(&mut self) {
-        let doing = std::mem::take(&mut self.pointer.doing);
+    fn up(&mut self, button: Button) {
+        if self.pointer.button != Some(button) {
+            return;
+        }
+        let doing = self.pointer.doing;
+        self.pointer.cease();
         let App { source: Some(source), view, size, hand, pointer, .. } = self else { return };
         let camera = view.camera(source.world(), *size);
         match (doing, source.playground()) {

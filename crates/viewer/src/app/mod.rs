@@ -164,7 +164,8 @@ impl App {
         self.source = Some(source);
         (self.comparison, self.file, self.message) = (None, None, None);
         (self.player, self.view) = (Player::default(), View::default());
-        (self.inspector, self.hand, self.pointer) = <_>::default();
+        (self.inspector, self.hand) = <_>::default();
+        self.pointer.cease();
     }
 
     /// Shows a file: a replay, a divergence report or a snapshot.

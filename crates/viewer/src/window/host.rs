@@ -85,14 +85,24 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     let numbered = (2..1000).map(|number| format!("{stem}-{number}.{ending}"));
     let mut outcome = Err(io::ErrorKind::AlreadyExists.into());
     for path in std::iter::once(name.to_owned()).chain(numbered).map(PathBuf::from) {
-        // A hard link never replaces a file, but a rename does.
-        outcome = fs::hard_link(&beside, &path).map(|()| path);
+        outcome = link_or_write(&beside, &path, bytes).map(|()| path);
         if !outcome.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::AlreadyExists) {
             break;
         }
     }
     fs::remove_file(beside)?;
     outcome
+}
+
+/// Gives a file a second name if the name is free, which a rename does not check. Writes another file if the file system
+/// has no hard links.
+fn link_or_write(file: &Path, name: &Path, bytes: &[u8]) -> io::Result<()> {
+    match fs::hard_link(file, name) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+            File::create_new(name)?.write_all(bytes)
+        }
+        outcome => outcome,
+    }
 }
 
 /// Writes a temporary file beside a path.

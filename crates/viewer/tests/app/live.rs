@@ -42,7 +42,9 @@ fn random_event(rng: &mut Rng, app: &mut App) {
         8 | 9 => app.handle(Event::Down(Button::Left)),
         10 => app.handle(Event::Down(Button::Right)),
         11 => app.handle(Event::Down(Button::Middle)),
-        12..=15 => app.handle(Event::Up(Button::Left)),
+        12 | 13 => app.handle(Event::Up(Button::Left)),
+        14 => app.handle(Event::Up(Button::Right)),
+        15 => app.handle(Event::Up(Button::Middle)),
         16 => press(app, Key::Character(keys[rng.below(12) as usize])),
         17 => press(app, travel[rng.below(8) as usize]),
         18 => press(app, Key::Character(LAYER_KEYS[rng.below(13) as usize])),
@@ -63,7 +65,7 @@ fn a_session_of_random_pointer_actions_verifies_whatever_they_are() {
                 app.draw();
             }
         }
-        app.handle(Event::Up(Button::Left));
+        [Button::Left, Button::Right, Button::Middle].map(|button| app.handle(Event::Up(button)));
         // Seeking to the end carries out the queued acts.
         press(&mut app, Key::End);
         frames(&mut app, 200);
@@ -102,6 +104,25 @@ fn a_body_is_dragged_and_thrown() {
     let thrown = place(&mut app);
     assert!(thrown[0] > dragged[0] + 5.0, "{dragged:?} -> {thrown:?}");
     assert!(verify::<Sandbox>(&saved(&mut app), &Limits::default()).is_match());
+}
+
+#[test]
+fn a_second_button_does_not_disturb_a_drag() {
+    let mut app = live("free_fall");
+    press(&mut app, Key::Character('i'));
+    let label = app.draw().texts().iter().rfind(|text| text.text.ends_with("v0")).unwrap().clone();
+    let height =
+        |app: &mut App| app.draw().texts().iter().find(|text| text.text == label.text).unwrap().at[1];
+    app.handle(Event::Moved([label.at[0] - 3.0, label.at[1] + 14.0]));
+    app.handle(Event::Down(Button::Left));
+    app.handle(Event::Down(Button::Right));
+    frames(&mut app, 60);
+    let held = height(&mut app);
+    app.handle(Event::Up(Button::Left));
+    app.handle(Event::Up(Button::Right));
+    frames(&mut app, 30);
+    let fallen = height(&mut app);
+    assert!((held - label.at[1]).abs() < 30.0 && fallen > held + 30.0, "{} {held} {fallen}", label.at[1]);
 }
 
 #[test]
