@@ -45,7 +45,7 @@ impl Comparison {
             let ends = [&*a, &*b].map(|scout| scout.ticks().unwrap_or(u64::MAX));
             let further = next <= ends[0].min(ends[1]);
             if !further || a.seek(next).is_err() || b.seek(next).is_err() {
-                self.searched = a.tick();
+                self.searched = next - 1;
                 self.scouts = None;
                 return;
             }
@@ -100,4 +100,57 @@ fn first_field(a: Option<&Body>, b: Option<&Body>) -> String {
     };
     let (a, b) = (fields(a).unwrap_or_default(), fields(b).unwrap_or_default());
     differences(&a, &b).first().map(|difference| difference.to_string()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use lockstep2d::hash::StateHash;
+
+    use super::*;
+    use crate::source::SourceError;
+
+    /// A world that stands still for 100 ticks, of which those up to `end` can be reached.
+    struct Still {
+        world: World,
+        tick: u64,
+        end: u64,
+    }
+
+    impl Source for Still {
+        fn name(&self) -> &str {
+            "still"
+        }
+        fn world(&mut self) -> &World {
+            &self.world
+        }
+        fn hash(&self) -> StateHash {
+            StateHash(0)
+        }
+        fn tick(&self) -> u64 {
+            self.tick
+        }
+        fn ticks(&self) -> Option<u64> {
+            Some(100)
+        }
+        fn tick_rate(&self) -> u32 {
+            60
+        }
+        fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+            self.tick = tick.min(self.end);
+            if tick <= self.end { Ok(()) } else { Err(SourceError("not reached".into())) }
+        }
+    }
+
+    #[test]
+    fn a_tick_that_one_source_does_not_reach_is_not_compared() {
+        for ends in [[100, 40], [40, 100], [40, 40]] {
+            let still =
+                |end| -> Box<dyn Source> { Box::new(Still { world: World::default(), tick: 0, end }) };
+            let mut comparison = Comparison::new(still(100), ends.map(still));
+            while comparison.scouts.is_some() {
+                comparison.think();
+            }
+            assert_eq!(comparison.status(), "still: identical up to tick 40", "{ends:?}");
+        }
+    }
 }

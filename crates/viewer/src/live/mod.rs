@@ -21,7 +21,7 @@ use hand::Hand;
 ///
 /// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
 /// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. The work of the
-/// replay may exceed the default limit of a verifier. The status then shows the work, as a value for `--max-work`.
+/// replay may exceed the default limit of a verifier. The status then shows a lower bound of `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;
@@ -199,7 +199,7 @@ impl Source for Live {
         status.extend(self.note.map(|note| format!(" · {note}")));
         let work = self.recording.work();
         if work > Limits::default().total_work {
-            status += &format!(" · verify it with --max-work {work}");
+            status += &format!(" · verify it with --max-work above {work}");
         }
         status
     }

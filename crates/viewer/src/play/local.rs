@@ -146,7 +146,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         let mut status = if own.is_empty() { course.to_owned() } else { format!("{course} · {own}") };
         let work = self.recording.work();
         if work > Limits::default().total_work {
-            status += &format!(" · verify it with --max-work {work}");
+            status += &format!(" · verify it with --max-work above {work}");
         }
         status
     }

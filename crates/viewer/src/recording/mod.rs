@@ -44,7 +44,7 @@ pub(crate) enum RecordingError {
         tick: u64,
         ticks: u64,
     },
-    /// A tick costs more work than the default limit of a verifier.
+    /// A tick costs more work than the default limit of a verifier, by [`Game::work`] alone.
     TooMuch,
     Record(RecordError),
     Log(InputError),
@@ -89,7 +89,8 @@ impl<G: Game> Recording<G> {
         self.tick == self.ticks()
     }
 
-    /// Work units of all recorded ticks, without those of the setup.
+    /// Work units of all recorded ticks by [`Game::work`]. A verifier also counts those of the setup, and those that
+    /// become known only while a tick runs.
     pub(crate) fn work(&self) -> u64 {
         self.work.last().copied().unwrap_or(0)
     }
