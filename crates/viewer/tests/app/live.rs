@@ -65,7 +65,9 @@ fn a_session_of_random_pointer_actions_verifies_whatever_they_are() {
                 app.draw();
             }
         }
-        [Button::Left, Button::Right, Button::Middle].map(|button| app.handle(Event::Up(button)));
+        for button in [Button::Left, Button::Right, Button::Middle] {
+            app.handle(Event::Up(button));
+        }
         // Seeking to the end carries out the queued acts.
         press(&mut app, Key::End);
         frames(&mut app, 200);
