@@ -36,7 +36,7 @@ struct Withdrawn {
     announced: u64,
 }
 
-/// What a body was at some tick.
+/// Identity of a body that has a view, and the tick at which the identity was taken.
 #[derive(Debug)]
 pub(crate) struct Shown {
     at: Stamp,
@@ -129,7 +129,7 @@ impl StepLog {
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
-            // Of several alike events, the nearest one is the same, and of two with one distance the older one.
+            // An event is matched to the nearest alike one, and to the older one of two at equal distances.
             let distance = |other: &Withdrawn| other.event.tick.abs_diff(event.tick);
             let alike = withdrawn
                 .iter()
@@ -172,7 +172,7 @@ impl StepLog {
 
     fn miss(&mut self, bodies: impl IntoIterator<Item = (BodyId, Shown)>) {
         for (body, shown) in bodies {
-            // Of several bodies with one id since the last frame, the first one is shown.
+            // The view has the body of the last frame, which is the first one noted for an id.
             self.missing.entry(body).or_insert(shown);
         }
     }
