@@ -158,7 +158,8 @@ impl Body {
         Transform::new(self.position(), self.rotation())
     }
 
-    /// Velocity of the centre of mass in m/s.
+    /// Velocity of the centre of mass in m/s. After a step, it is 0 for a body that
+    /// [`World::move_to`](crate::world::World::move_to) moves.
     #[must_use]
     pub fn velocity(&self) -> Vec2<Fx> {
         self.velocity.widen()
@@ -170,7 +171,8 @@ impl Body {
         divide(widen(self.spin), self.mass.gyration)
     }
 
-    /// Velocity in m/s of the body's material at a world position.
+    /// Velocity in m/s of the body's material at a world position. As [`Body::velocity`], 0 after
+    /// [`World::move_to`](crate::world::World::move_to) and a step.
     #[must_use]
     pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())

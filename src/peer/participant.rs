@@ -334,6 +334,19 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Requests an end of the match after a number of ticks, as [`Session::end_at`] does.
+    ///
+    /// The request of one peer ends the match for all, and [`Peer::game`] may depend on wrong guesses. Decide by
+    /// confirmed ticks. Here, the number of ticks after which a game was won is part of its state:
+    ///
+    /// ```
+    /// # use lockstep2d::{lockstep::Game, peer::{Peer, Transport}};
+    /// # trait Rules: Game { fn over_at(&self) -> Option<u64>; }
+    /// # fn after_update<G: Rules, T: Transport>(peer: &mut Peer<G, T>) {
+    /// if let Some(over_at) = peer.game().over_at() && over_at <= peer.confirmed() {
+    ///     peer.end_at(over_at + 180);
+    /// }
+    /// # }
+    /// ```
     pub const fn end_at(&mut self, ticks: u64) {
         self.end = Some(ticks);
     }

@@ -238,14 +238,15 @@ impl Session {
     }
 
     /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before that tick; later calls
-    /// have no effect. If several requests are known when a majority decides, the largest number counts. After the
-    /// decision no peer gets a seat, and the end does not change.
+    /// have no effect. The request of one peer is enough and cannot be taken back, so make it when the ticks on which
+    /// it depends are [confirmed](Session::confirmed). If several requests are known when a majority decides, the
+    /// largest number counts. After the decision no peer gets a seat, and the end does not change.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
 
-    /// Requests a pause, or withdraws the request. Games decide how to react to [`Event::Pause`]. The session does not
-    /// stop.
+    /// Requests a pause, or withdraws the request: the others get [`Event::Pause`], and nothing stops. A pause is a time
+    /// in which no game calls [`advance`](Session::advance), while all call [`update`](Session::update).
     pub fn pause(&mut self, paused: bool) {
         self.paused = paused;
     }

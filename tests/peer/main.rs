@@ -1,6 +1,7 @@
 //! Matches of a game with physics over a network in memory, in simulated time.
 
 mod another_match;
+mod pause;
 mod presses;
 mod pushers;
 #[cfg(feature = "sealed")]
@@ -24,6 +25,8 @@ struct Table {
     peers: Vec<Option<Peer<Pushers, Port>>>,
     events: Vec<Vec<PeerEvent>>,
     replays: Vec<Vec<u8>>,
+    /// A peer whose game calls `update` only.
+    stopped: Option<usize>,
 }
 
 fn identity(number: u32) -> PeerIdentity {
@@ -42,7 +45,7 @@ fn conditions(latency: u64, loss: u8) -> LinkConditions {
 impl Table {
     fn new(latency: u64, loss: u8) -> Self {
         let network = Network::new(conditions(latency, loss), 3);
-        Table { network, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
+        Table { network, peers: Vec::new(), events: Vec::new(), replays: Vec::new(), stopped: None }
     }
 
     fn next(&self) -> (PeerIdentity, Port) {
@@ -81,7 +84,7 @@ impl Table {
             for at in 0..self.peers.len() {
                 let Some(peer) = &mut self.peers[at] else { continue };
                 peer.update(now).expect("valid");
-                while peer.is_due() {
+                while self.stopped != Some(at) && peer.is_due() {
                     let tick = peer.tick();
                     let inputs: Vec<u8> = peer.seats().iter().map(|&seat| bot(seat, tick)).collect();
                     peer.advance(&inputs).expect("valid");

@@ -836,7 +836,7 @@ typedef struct ls2d_mover_state {
     uint32_t size;
     /* `LS2D_MOVER_` flags. */
     uint32_t flags;
-    /* Position of the centre of the character's geometry in the world, in metres. */
+    /* Position in the world, in metres, of the origin of the geometry's coordinates. */
     ls2d_vec2 position;
     /* Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     ls2d_vec2 velocity;

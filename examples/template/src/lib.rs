@@ -93,7 +93,7 @@ impl MyGame {
         &self.rules
     }
 
-    /// Whether a player has won.
+    /// Whether a player has won. In a match with rollback, it may only seem so: see `lockstep2d::peer::Peer::end_at`.
     pub fn is_over(&self) -> bool {
         self.rules.goals.iter().any(|&goals| goals >= GOALS_TO_WIN)
     }

@@ -124,7 +124,8 @@ impl World {
 
     /// Sets the pose that a kinematic body reaches in the next tick: the position of its origin in metres, and its
     /// rotation. The body pushes dynamic bodies on its way, and stops at the target unless it gets another target. The
-    /// body rotates in the direction of the smaller angle.
+    /// body rotates in the direction of the smaller angle. [`Body::velocity`] is that of the way until the next step,
+    /// and 0 after it, even if the body gets a target in every tick.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose is

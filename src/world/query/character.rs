@@ -101,7 +101,7 @@ impl Mover {
         self
     }
 
-    /// Returns the geometry at a position in the world, in metres.
+    /// Returns the geometry with its origin at a position in the world, in metres.
     #[must_use]
     pub fn probe(&self, position: impl Into<Vec2<Fx>>) -> Probe {
         let position = position.into();
@@ -145,7 +145,8 @@ impl Mover {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MoverState {
-    /// Position of the centre of the character's geometry in the world, in metres.
+    /// Position in the world, in metres, of the origin of the geometry's coordinates. For a geometry whose lowest point
+    /// is (0, 0), that is the position of the feet.
     pub position: Vec2<Fx>,
     /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. A
     /// character that leaves the ground takes the velocity of the ground with it.

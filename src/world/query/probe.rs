@@ -18,7 +18,7 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// A geometry with its centre at a position in the world, in metres.
+    /// A geometry with the origin of its coordinates at a position in the world, in metres.
     ///
     /// # Errors
     /// [`GeometryError`] if its size is out of range.
@@ -38,7 +38,7 @@ impl Probe {
         Probe { position, geometry, rotation }
     }
 
-    /// Sets the rotation.
+    /// Sets the rotation about the geometry's origin.
     #[must_use]
     pub fn turned(mut self, angle: Angle) -> Self {
         self.rotation = Rot::from_angle(angle);
@@ -53,7 +53,7 @@ impl Probe {
         self
     }
 
-    /// Position of the probe's centre in the world, in metres.
+    /// Position of the geometry's origin in the world, in metres.
     #[must_use]
     pub const fn position(&self) -> Vec2<Fx> {
         self.position

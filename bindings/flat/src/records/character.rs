@@ -60,7 +60,7 @@ records! {
         size: u32,
         /// `LS2D_MOVER_` flags.
         flags: u32,
-        /// Position of the centre of the character's geometry in the world, in metres.
+        /// Position in the world, in metres, of the origin of the geometry's coordinates.
         position: RawVec2,
         /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world.
         velocity: RawVec2,
