@@ -837,6 +837,8 @@ export interface MoverState {
     velocity?: Vec;
     /** The ground on which the character stands; undefined in the air. */
     ground?: MoverPlane | undefined;
+    /** Whether the character is inside a shape that is solid from one side, and passes on until it is out of it. */
+    isPassing?: boolean;
 }
 export interface Moved {
     /** The new state, for the next call. */
@@ -850,6 +852,8 @@ export interface Moved {
         isOnGround: boolean;
         /** Whether the character is wedged between two slopes that are too steep to stand on. */
         isWedged: boolean;
+        /** Whether the character is inside a shape that is solid from one side, and passes on until it is out of it. */
+        isPassing: boolean;
     };
     /** The surfaces met, in order. */
     met: MoverPlane[];

@@ -15,10 +15,11 @@ pub(crate) use kept_manifold::{KeptManifold, KeptSide};
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{
     BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, SmallBoxesRange, collide,
-    collide_near, is_ghost, margin_for, may_meet,
+    collide_near, is_ghost, is_open, margin_for, may_meet, pass_direction,
 };
 pub(crate) use query::{
     RelativePose, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray,
-    cast_shape, contains_point, distance, first_impact, first_overlap, goes_against, overlap, time_of_impact,
+    cast_shape, contains_point, distance, first_impact, first_overlap, goes_against, normal_at, overlap,
+    time_of_impact,
 };
 pub(crate) use shape::{Fraction, Link, Outline, PosedShape, SupportShape, arm_of, to_grid};

@@ -159,3 +159,42 @@ fn passing_survives_a_snapshot() {
     }
     assert!(height(&restored, body) < fx!(-1));
 }
+
+/// The side on which bodies first touch a platform decides, also if another part of it was nearer at the start of the
+/// tick.
+#[test]
+fn fast_bodies_that_come_over_the_edge_are_held() {
+    for ((x, y), velocity) in [
+        ((fx!(-3), fx!(0.45)), (fx!(100), fx!(-25))),
+        ((fx!(-3), fx!(0.205)), (fx!(60), fx!(-1))),
+        ((fx!(3), fx!(0.45)), (fx!(-100), fx!(-25))),
+    ] {
+        let mut world = World::default();
+        let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.1)).expect("valid")).one_way(up());
+        world.spawn(&BodyDef::fixed(), &[slab]).expect("valid");
+        let def = BodyDef::dynamic().position((x, y)).velocity(velocity);
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.1)).expect("valid"));
+        let body = world.spawn(&def, &[ball]).expect("valid");
+        for _ in 0..2 {
+            world.step();
+        }
+        assert!(height(&world, body) > fx!(0.19), "from {x}, {y}: {}", height(&world, body));
+    }
+}
+
+/// A resting ball that is hit from below flies through a platform within the tick.
+#[test]
+fn what_is_shot_from_below_passes_within_the_tick() {
+    let mut world =
+        World::new(lockstep2d::world::Config { gravity: Vec2::ZERO, ..Default::default() }).expect("valid");
+    let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.1)).expect("valid")).one_way(up());
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.1))), &[slab]).expect("valid");
+    let ball = |radius| ShapeDef::new(Geometry::circle(radius).expect("valid"));
+    let at = |y| BodyDef::dynamic().position((fx!(0), y));
+    let small = world.spawn(&at(fx!(-0.7)), &[ball(fx!(0.1))]).expect("valid");
+    world.spawn(&at(fx!(-1.4)).velocity((fx!(0), fx!(60))), &[ball(fx!(0.5))]).expect("valid");
+    world.step();
+    // At the end of the tick the large ball is at -0.4 m, and touches the small one.
+    let y = height(&world, small);
+    assert!((y - fx!(0.2)).abs() < fx!(0.05), "the ball is at {y}");
+}

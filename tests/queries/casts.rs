@@ -326,3 +326,30 @@ fn a_cast_from_within_a_shape_starts_inside_with_and_without_a_turn() {
         assert!(straight.starts_inside && turning.starts_inside, "{straight:?} {turning:?}");
     }
 }
+
+/// A one-sided chain is open from below, also for queries that start on the right of the line through its lip.
+#[test]
+fn queries_from_below_a_convex_corner_pass_through_the_roof() {
+    for points in [
+        &[at(fx!(0), fx!(-1)), at(fx!(0), fx!(0)), at(fx!(-10), fx!(0))][..],
+        &[at(fx!(100), fx!(-3)), at(fx!(0), fx!(-3)), at(fx!(0), fx!(0)), at(fx!(-10), fx!(0))],
+        &[at(fx!(10), fx!(0)), at(fx!(0), fx!(0)), at(fx!(0), fx!(-1))],
+    ] {
+        let mut world = World::default();
+        let links = Chain::new(points).one_sided().links().expect("valid");
+        world.spawn(&BodyDef::fixed(), &links).expect("valid");
+        let mirrored = if points.last().is_some_and(|last| last.x == 0) { -1 } else { 1 };
+        let (from, way) = (at(fx!(5) * mirrored, fx!(-10)), at(fx!(-10) * mirrored, fx!(12)));
+        let filter = QueryFilter::default();
+        assert_eq!(world.cast_ray(from, way, filter), None, "{points:?}");
+        assert_eq!(world.cast_ray_all(from, way, filter), [], "{points:?}");
+        let ball = Probe::new(Geometry::circle(fx!(0.1)).expect("valid"), from).expect("valid");
+        assert_eq!(world.cast_shape(&ball, way, filter), None, "{points:?}");
+        assert_eq!(world.cast_turning(&ball, way, fx!(0.1), filter), None, "{points:?}");
+        // From above, roof and lip are solid.
+        let above = at(fx!(5) * mirrored, fx!(10));
+        assert!(world.cast_ray(above, at(fx!(-10) * mirrored, fx!(-12)), filter).is_some(), "{points:?}");
+        let beside = at(fx!(5) * mirrored, fx!(-0.5));
+        assert!(world.cast_ray(beside, at(fx!(-10) * mirrored, fx!(0)), filter).is_some(), "{points:?}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Characters stay on their ground, at 30 to 240 ticks a second.
 
+mod one_way;
 mod overhangs;
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};

@@ -1,6 +1,6 @@
 //! Walls that hang over a floor, and steps below ceilings.
 
-use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
@@ -69,4 +69,22 @@ fn a_character_does_not_climb_a_step_without_headroom() {
 fn block(world: &mut World, centre: Vec2<Fx>, half: Vec2<Fx>) {
     let shape = ShapeDef::new(Polygon::rectangle(half.x, half.y).expect("valid"));
     world.spawn(&BodyDef::fixed().position(centre), &[shape]).expect("valid");
+}
+
+/// What is behind the character, but not behind its position, does not hinder a step.
+#[test]
+fn a_character_beside_its_position_climbs_steps() {
+    let mut world = world(60);
+    block(&mut world, at(fx!(0), fx!(-1)), at(fx!(50), fx!(1)));
+    block(&mut world, at(fx!(0.75), fx!(1.5)), at(fx!(0.25), fx!(1.5)));
+    block(&mut world, at(fx!(8), fx!(0)), at(fx!(5), fx!(0.2)));
+    let beside = at(fx!(2), fx!(0.7));
+    let pill = Geometry::capsule(beside - at(fx!(0), fx!(0.4)), beside + at(fx!(0), fx!(0.4)), fx!(0.3));
+    let mover = Mover::new(pill.expect("valid")).expect("valid").step_height(fx!(0.3));
+    let mut state = MoverState::at(at(fx!(0.2), fx!(0.0001)));
+    for _ in 0..60 {
+        state.velocity = at(fx!(2), state.velocity.y - fall(60));
+        state = world.move_character(&mover, &state, QueryFilter::default()).state;
+    }
+    assert!(state.is_on_ground() && (state.position.y - fx!(0.2001)).abs() < fx!(0.0001), "{state:?}");
 }

@@ -6,7 +6,7 @@ import { C } from "./layout.js";
 import { call, copy, fieldAt, give, library, list, optionsOf, read, scratch, sizeOf, write } from "./library.js";
 import { World } from "./world.js";
 
-const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged"];
+const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged", "isPassing"];
 const PLANE = optionsOf("mover_plane");
 const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
 
@@ -19,12 +19,14 @@ function writeMover(at, options) {
 }
 
 function writeState(at, state) {
-    const { position, velocity = [0, 0], ground, isWedged } = onlyKnown(state, STATE_FIELDS, "the state of a character");
+    const { position, velocity = [0, 0], ground, isWedged, isPassing } = onlyKnown(state, STATE_FIELDS, "the state of a character");
     if (position === undefined) {
         fail("the state of a character has a position");
     }
     call("ls2d_mover_state_init", 0n, 0n, at);
-    const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND) | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0);
+    const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND)
+        | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0)
+        | (flag(isPassing, "isPassing") ? C.MOVER_PASSING : 0);
     write("mover_state", at, { position, velocity, flags });
     if (ground !== undefined) {
         onlyKnown(ground, PLANE, "`ground`");
@@ -37,7 +39,8 @@ function readState(at) {
     const { position, velocity, flags } = read("mover_state", at);
     const isOnGround = (flags & C.MOVER_ON_GROUND) !== 0;
     const ground = isOnGround ? readPlane(fieldAt("mover_state", at, "ground")) : undefined;
-    return { position, velocity, ground, isOnGround, isWedged: (flags & C.MOVER_WEDGED) !== 0 };
+    const [isWedged, isPassing] = [C.MOVER_WEDGED, C.MOVER_PASSING].map((bit) => (flags & bit) !== 0);
+    return { position, velocity, ground, isOnGround, isWedged, isPassing };
 }
 
 function readPlane(at) {

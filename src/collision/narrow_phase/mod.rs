@@ -12,7 +12,7 @@ pub(in crate::collision) mod segment;
 pub(crate) use box_box::{BoxPairs, SmallBoxes, SmallBoxesRange};
 pub(crate) use ghost_collision::{GhostFilter, is_ghost};
 pub(crate) use hull_hull::{CachedAxis, SatCounters};
-pub(crate) use one_way::OneWay;
+pub(crate) use one_way::{OneWay, is_open, pass_direction};
 
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{Hull, Outline, PosedShape};

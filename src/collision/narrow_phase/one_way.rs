@@ -14,13 +14,24 @@
 
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{Outline, PosedShape};
-use crate::math::{Fx, Unit, Vec2, widen};
+use crate::math::{Angle, Fx, Rot, Unit, Vec2, widen};
 
 /// A one-way platform and its pass direction in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneWay<'a> {
     pub(crate) shape: &'a PosedShape,
     pub(crate) direction: Vec2<Unit>,
+}
+
+/// The direction in which other shapes pass, in world axes. `angle` is its angle in the world.
+pub(crate) fn pass_direction(angle: Angle) -> Vec2<Unit> {
+    Rot::from_angle(angle).apply(Vec2::X)
+}
+
+/// Whether a platform is open to a shape that touches it with this normal, which points to the shape.
+pub(crate) fn is_open(pass_direction: Vec2<Unit>, normal: Vec2<Unit>) -> bool {
+    let upright: Unit = normal.dot(pass_direction);
+    upright < Unit::lit("0.5")
 }
 
 impl OneWay<'_> {
@@ -40,8 +51,7 @@ impl OneWay<'_> {
         if was_passing && overlaps && self.separation_from(other) < -slack {
             return true;
         }
-        let upright: Unit = manifold.normal.dot(self.direction);
-        upright < Unit::lit("0.5")
+        is_open(self.direction, manifold.normal)
     }
 
     /// Separation of the shapes along the pass direction. Negative until the other shape is fully through.

@@ -116,6 +116,16 @@ pub(crate) fn first_impact(
     }
 }
 
+/// Normal from A to B at a fraction of the tick. `None` if a shape rotates too far.
+pub(crate) fn normal_at(
+    (a, sweep_a): (&SupportShape, &Sweep),
+    (b, sweep_b): (&SupportShape, &Sweep),
+    fraction: Fx,
+) -> Option<Vec2<Unit>> {
+    let (a, b) = swept_pair(a, sweep_a, b, sweep_b, Fx::ONE).ok()?;
+    Some(distance(&a.at(fraction).support, &b.at(fraction).support).normal)
+}
+
 const OVERLAP_STEPS_MAX: u32 = 256;
 
 /// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth. `None` also if a shape

@@ -153,13 +153,15 @@ pub struct MoverState {
     pub velocity: Vec2<Fx>,
     /// The ground that the character stands on, if any.
     pub ground: Option<MoverPlane>,
+    /// Whether the character is inside a shape that is solid from one side, and passes on until it is out of it.
+    pub is_passing: bool,
 }
 
 impl MoverState {
     /// A character at rest in the air.
     #[must_use]
     pub const fn at(position: Vec2<Fx>) -> Self {
-        MoverState { position, velocity: Vec2::new(Fx::ZERO, Fx::ZERO), ground: None }
+        MoverState { position, velocity: Vec2::new(Fx::ZERO, Fx::ZERO), ground: None, is_passing: false }
     }
 
     /// Whether the character stands on ground.
@@ -246,7 +248,8 @@ impl World {
         walk.walk();
         let ground = walk.ground(carried);
         let velocity = walk.velocity_left(ground.as_ref(), carried);
-        Moved { state: MoverState { position: walk.position(), velocity, ground }, met: walk.met() }
+        let (position, is_passing) = (walk.position(), walk.is_passing());
+        Moved { state: MoverState { position, velocity, ground, is_passing }, met: walk.met() }
     }
 }
 

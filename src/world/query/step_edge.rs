@@ -39,11 +39,12 @@ impl Walk<'_> {
         if y < -SLOPE_ROUNDING || x == 0 || self.mover.step_max() == Fx::ZERO {
             return false;
         }
-        let feet = self.probe.posed().bounds.lower.y;
+        let bounds = self.probe.posed().bounds;
+        let feet = bounds.lower.y;
         let onwards = if x < 0 { STEP_DEPTH } else { -STEP_DEPTH };
         let top = feet.saturating_add(self.mover.step_max());
         let above = Vec2::new(plane.point.x.saturating_add(onwards), top);
-        let here = Vec2::new(self.probe.position().x, top);
+        let here = Vec2::new(bounds.centre().x, top);
         if self.world.cast_ray_any(here, above - here, self.filter) {
             return false;
         }

@@ -8,8 +8,8 @@ use super::mover_planes::{MoverPlane, along_surface, clipped, solve_planes};
 use super::seam::Rest;
 use super::step_edge::Surface;
 use super::{InitialOverlap, Probe, QueryFilter};
-use crate::body::{BodyId, BodyKind, Geometry, Handle, ShapeId, Sides};
-use crate::collision::{SKIN, SupportShape, distance};
+use crate::body::{BodyId, BodyKind, Geometry, Handle, Shape, ShapeId, Sides};
+use crate::collision::{SKIN, SupportShape, distance, is_open, pass_direction};
 use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
 use crate::world::World;
@@ -112,8 +112,9 @@ impl<'a> Walk<'a> {
         let rate = i64::from(self.world.state.config.tick_rate);
         for _ in 0..TURNS_MAX {
             let mut planes = self.world.collide_mover(&self.probe, Fx::ZERO, self.filter);
-            planes
-                .retain(|plane| plane.separation < Fx::ZERO && !self.passes(plane.shape, plane.normal, true));
+            planes.retain(|plane| {
+                plane.separation < Fx::ZERO && !self.passes(plane.shape, plane.normal, plane.separation)
+            });
             if planes.is_empty() {
                 return;
             }
@@ -268,7 +269,7 @@ impl<'a> Walk<'a> {
     /// The most level ground that the character touches.
     fn standing(&self) -> Option<MoverPlane> {
         let mut planes = self.world.collide_mover(&self.probe, STANDING, self.filter);
-        planes.retain(|plane| !self.passes(plane.shape, plane.normal, plane.separation < Fx::ZERO));
+        planes.retain(|plane| !self.passes(plane.shape, plane.normal, plane.separation));
         let of_kind = |kind| planes.iter().filter(move |plane| self.surface(plane) == kind);
         let most_level = of_kind(Surface::Ground).max_by_key(|plane| plane.normal.y);
         most_level.or_else(|| of_kind(Surface::Step).next()).copied()
@@ -314,12 +315,13 @@ impl<'a> Walk<'a> {
         without: Option<BodyId>,
     ) -> Option<(Vec2<Fx>, MoverPlane)> {
         let stops = |shape: ShapeId, normal, [other, own]: [&SupportShape; 2]| {
-            let overlapped = distance(other, own).distance < Fx::ZERO;
+            let separation = distance(other, own).distance;
             let body = self.world.state.body_of(shape.slot());
-            let moved_over = overlaps == Overlaps::Pass && overlapped && body.kind() != BodyKind::Fixed;
+            let moved_over =
+                overlaps == Overlaps::Pass && separation < Fx::ZERO && body.kind() != BodyKind::Fixed;
             !moved_over
                 && without != self.world.shape(shape).map(|shape| shape.body())
-                && !self.passes(shape, normal, overlapped)
+                && !self.passes(shape, normal, separation)
         };
         let hit = self.world.first_along(probe, translation, self.filter, Rest::CHARACTER, stops)?;
         Some((hit.travelled, self.world.mover_plane(hit.shape, hit.normal, SKIN, hit.point)))
@@ -330,16 +332,38 @@ impl<'a> Walk<'a> {
     }
 
     /// Whether the character passes through a shape that is solid from one side. It passes if it is on the other side,
-    /// or still overlaps the shape.
-    fn passes(&self, id: ShapeId, normal: Vec2<Unit>, overlaps: bool) -> bool {
+    /// or if it has been passing and still overlaps the shape.
+    fn passes(&self, id: ShapeId, normal: Vec2<Unit>, separation: Fx) -> bool {
         let Some(shape) = self.world.shape(id) else { return true };
-        let one_sided = matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. });
-        let leaves = shape.one_way().zip(self.world.body(shape.body())).map(|(direction, body)| {
-            let upright: Unit = Rot::from_angle(body.angle() + direction).apply(Vec2::X).dot(normal);
-            upright < Unit::lit("0.5")
-        });
-        overlaps && (one_sided || leaves.is_some()) || leaves == Some(true)
+        let direction = shape.one_way().zip(self.world.body(shape.body()));
+        let is_open =
+            direction.is_some_and(|(angle, body)| is_open(pass_direction(body.angle() + angle), normal));
+        is_open || self.from.is_passing && is_solid_from_one_side(shape) && self.is_deep(separation)
     }
+
+    /// Whether shapes overlap too deeply for a character that has just come onto ground, as in [`OneWay`].
+    ///
+    /// [`OneWay`]: crate::collision::OneWay
+    fn is_deep(&self, separation: Fx) -> bool {
+        separation < -(self.world.state.config.speculative_distance / 4)
+    }
+
+    /// Whether the character overlaps a shape that it is passing through.
+    pub(super) fn is_passing(&self) -> bool {
+        let (posed, origin) = (self.probe.posed(), self.probe.position());
+        let own = SupportShape::of(&posed, origin);
+        let mut passing = false;
+        self.world.each_overlapping(posed.bounds, self.filter, |id, other| {
+            let is_one_sided = || self.world.shape(id).is_some_and(is_solid_from_one_side);
+            passing = passing
+                || is_one_sided() && self.is_deep(distance(&SupportShape::of(other, origin), &own).distance);
+        });
+        passing
+    }
+}
+
+fn is_solid_from_one_side(shape: &Shape) -> bool {
+    shape.one_way().is_some() || matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. })
 }
 
 /// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to

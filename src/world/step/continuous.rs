@@ -11,10 +11,12 @@
 use core::ops::ControlFlow;
 
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::collision::{SupportShape, Sweep, TimeOfImpact, time_of_impact};
+use crate::collision::{
+    SupportShape, Sweep, TimeOfImpact, is_open, normal_at, pass_direction, time_of_impact,
+};
 use crate::fx;
-use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
-use crate::world::cache::{Extents, Scratch, SweptBody, WorkMeter};
+use crate::math::{Aabb, Angle, Fx, Rot, Unit, Vec2, fx_mul};
+use crate::world::cache::{Extents, MotionCache, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
@@ -184,7 +186,13 @@ fn first_impact(
                     TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
                     TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
                 };
-                let impact = fraction.map(|fraction| Impact { fraction, obstacle: other });
+                let stopping = fraction.filter(|&fraction| {
+                    !has_one_way(motion, [id.slot(), other]) || {
+                        let normal = normal_at((&there, &movement), (&support, &swept.sweep), fraction);
+                        normal.is_none_or(|normal| !lets_pass(state, [other, id.slot()], normal))
+                    }
+                });
+                let impact = stopping.map(|fraction| Impact { fraction, obstacle: other });
                 first = first.into_iter().chain(impact).min();
             }
             ControlFlow::Continue(())
@@ -237,13 +245,25 @@ pub(super) fn is_bullet(body: &Body) -> bool {
 
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
     let pair = (a.min(b), a.max(b));
-    // Whether a one-way shape lets the other one pass was decided at the start of the tick.
     let is_passing = || {
-        if ![a, b].iter().any(|&shape| scratch.shapes.motion().shape(shape).one_way) {
+        if !has_one_way(scratch.shapes.motion(), [a, b]) {
             return false;
         }
         let found = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
         found.is_ok_and(|index| state.contacts[index].passing)
     };
     !state.shapes.at(b).is_sensor() && scratch.pairs.non_colliding.may_touch(state, pair) && !is_passing()
+}
+
+fn has_one_way(motion: &MotionCache, shapes: [u32; 2]) -> bool {
+    shapes.into_iter().any(|shape| motion.shape(shape).one_way)
+}
+
+/// Whether a one-way shape lets the other shape pass that meets it in the tick. The normal points from A to B.
+fn lets_pass(state: &State, [a, b]: [u32; 2], normal: Vec2<Unit>) -> bool {
+    let is_open_to = |shape: u32, normal: Vec2<Unit>| {
+        let direction = state.shapes.at(shape).one_way();
+        direction.is_some_and(|angle| is_open(pass_direction(state.body_of(shape).angle + angle), normal))
+    };
+    is_open_to(a, normal) || is_open_to(b, -normal)
 }

@@ -206,7 +206,7 @@ impl NarrowPhase<'_> {
             // Displacements of the bodies until their impact, at which the manifold is computed.
             let mut moved_by = [Vec2::ZERO; 2];
             if !is_kept {
-                keep_reachable(state, poses, &pair, contact, manifold);
+                keep_reachable(state, poses, &pair, contact, manifold, sat);
                 if manifold.points().is_empty() {
                     manifolds.pop();
                     continue;
@@ -265,7 +265,7 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     closing.may_meet(a, b) && {
         let (mut axis, mut counters) = (CachedAxis::default(), SatCounters::default());
         let mut manifold = manifold_of(poses, &pair, shapes, &mut axis, &mut counters);
-        keep_reachable(state, poses, &pair, &mut contact, &mut manifold);
+        keep_reachable(state, poses, &pair, &mut contact, &mut manifold, &mut counters);
         !manifold.points().is_empty()
     }
 }
@@ -290,6 +290,7 @@ fn keep_reachable(
     pair: &SpeculativePair,
     contact: &mut Contact,
     manifold: &mut Manifold,
+    counters: &mut SatCounters,
 ) {
     let was_passing = core::mem::take(&mut contact.passing);
     if manifold.points().is_empty() {
@@ -298,7 +299,12 @@ fn keep_reachable(
     let (a, b) = contact.shapes;
     if pair.a.one_way || pair.b.one_way {
         let sides = [a, b].map(|slot| Side::of(state, poses, slot));
-        contact.passing = pair.lets_pass(sides, manifold, was_passing);
+        // Shapes that first touch later in the tick may touch another face than the nearest one at the start.
+        let mut at_touch = *manifold;
+        if pair.may_impact(manifold) {
+            pair.move_to_impact(sides, poses.motion(), &mut at_touch, counters);
+        }
+        contact.passing = pair.lets_pass(sides, &at_touch, was_passing);
         if contact.passing {
             *manifold = Manifold::NONE;
             return;

@@ -1,8 +1,8 @@
 //! Speculative contacts: selects the points that bodies can reach within the tick at their initial velocities.
 
 use crate::body::{Body, Shape};
-use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost};
-use crate::math::{Length, Rot, Step, Unit, Vec2, convert, saturate, widen};
+use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost, pass_direction};
+use crate::math::{Length, Step, Unit, Vec2, convert, saturate, widen};
 use crate::world::cache::{
     ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, Poses, PredictedMotion, ShapeMotion, Travel,
 };
@@ -73,8 +73,7 @@ impl<'a> Side<'a> {
 
     fn one_way(&self) -> Option<OneWay<'a>> {
         let angle = self.shape.one_way()?;
-        let direction = Rot::from_angle(self.body.angle() + angle).apply(Vec2::X);
-        Some(OneWay { shape: self.posed, direction })
+        Some(OneWay { shape: self.posed, direction: pass_direction(self.body.angle() + angle) })
     }
 }
 

@@ -15,6 +15,8 @@ constants! {
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
     /// `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
+    /// `ls2d_mover_state.flags`: inside a shape that is solid from one side, passing on until it is out of it.
+    MOVER_PASSING = 4, "LS2D_MOVER_PASSING";
 }
 
 records! {
@@ -142,7 +144,9 @@ impl RawMoverState {
     pub(crate) fn of(state: &MoverState, is_wedged: bool) -> Self {
         RawMoverState {
             size: size::<Self>(),
-            flags: flag(state.is_on_ground(), MOVER_ON_GROUND) | flag(is_wedged, MOVER_WEDGED),
+            flags: flag(state.is_on_ground(), MOVER_ON_GROUND)
+                | flag(is_wedged, MOVER_WEDGED)
+                | flag(state.is_passing, MOVER_PASSING),
             position: RawVec2::of(state.position),
             velocity: RawVec2::of(state.velocity),
             ground: state.ground.as_ref().map_or(RawMoverPlane::NONE, RawMoverPlane::of),
@@ -151,8 +155,9 @@ impl RawMoverState {
 
     pub(crate) fn state(&self) -> Outcome<MoverState> {
         check_size::<Self>(self.size)?;
-        check_flags("the flags of a character", self.flags, MOVER_ON_GROUND | MOVER_WEDGED)?;
+        check_flags("the flags of a character", self.flags, MOVER_ON_GROUND | MOVER_WEDGED | MOVER_PASSING)?;
         let ground = has(self.flags, MOVER_ON_GROUND).then(|| self.ground.plane()).transpose()?;
-        Ok(MoverState { position: self.position.vec(), velocity: self.velocity.vec(), ground })
+        let is_passing = has(self.flags, MOVER_PASSING);
+        Ok(MoverState { position: self.position.vec(), velocity: self.velocity.vec(), ground, is_passing })
     }
 }

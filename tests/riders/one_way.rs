@@ -1,0 +1,133 @@
+//! Ground that is solid from one side and comes up, turns, or bends.
+
+use lockstep2d::body::{BodyDef, BodyId, Chain, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
+
+use super::{RATES, at, fall, shapes, world};
+
+const LENGTH: Fx = fx!(2);
+
+/// One-way and one-sided platforms with their tops at height 0.
+fn platforms() -> [Vec<ShapeDef>; 2] {
+    let slab = Polygon::rectangle(LENGTH, fx!(0.1)).expect("valid");
+    let slab = ShapeDef::new(slab).offset((fx!(0), fx!(-0.1))).one_way(Angle::QUARTER);
+    let ends = [at(LENGTH, fx!(0)), at(-LENGTH, fx!(0))];
+    [vec![slab], Chain::new(&ends).one_sided().links().expect("valid")]
+}
+
+/// Steps the world, moves the platform up by `rise`, and moves the character.
+fn tick(world: &mut World, platform: (BodyId, Fx), mover: &Mover, state: &MoverState) -> MoverState {
+    let rate = world.config().tick_rate;
+    if platform.1 != 0 {
+        let y = world.body(platform.0).expect("there").position().y;
+        world.move_to(platform.0, at(fx!(0), y + platform.1), Angle::ZERO).expect("valid");
+    }
+    world.step();
+    let velocity = state.velocity - Vec2::new(fx!(0), fall(rate));
+    world.move_character(mover, &MoverState { velocity, ..*state }, QueryFilter::default()).state
+}
+
+fn feet(state: &MoverState) -> Fx {
+    state.position.y - fx!(0.7)
+}
+
+/// Characters land on a platform that rises by up to 10 cm in a tick, from every distance, and stay on it.
+#[test]
+fn characters_land_on_rising_platforms() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        for (rise, moves) in [(fx!(0.02), true), (fx!(0.1), true), (fx!(0.05), false)] {
+            for start in 1..10 {
+                let mut world = world(60);
+                let speed = if moves { fx!(0) } else { rise * 60 };
+                let def = BodyDef::kinematic().velocity((fx!(0), speed));
+                let body = world.spawn(&def, &platform).expect("valid");
+                let mover = Mover::new(shape).expect("valid");
+                let mut state = MoverState::at(at(fx!(0.1), fx!(0.7) + fx!(0.037) * start));
+                for number in 0..60 {
+                    let rise = if moves { rise } else { fx!(0) };
+                    state = tick(&mut world, (body, rise), &mover, &state);
+                    let above = feet(&state) - world.body(body).expect("there").position().y;
+                    let case = format!("{name}, {rise} m a tick, start {start}, tick {number}");
+                    assert!(above >= 0, "{case}: the feet are {above} m above the platform");
+                }
+                assert!(state.is_on_ground(), "{name}, {rise} m a tick, start {start}");
+            }
+        }
+    }
+}
+
+#[test]
+fn characters_stay_on_planks_that_turn() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        for (rate, spin) in RATES.into_iter().flat_map(|rate| [fx!(0.5), fx!(-0.5)].map(|spin| (rate, spin)))
+        {
+            let mut world = world(rate);
+            let def = BodyDef::kinematic().angular_velocity(spin);
+            let body = world.spawn(&def, &platform).expect("valid");
+            let mover = Mover::new(shape).expect("valid");
+            let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
+            // 40 degrees, with ground up to 45 degrees.
+            for number in 0..rate * 14 / 10 {
+                state = tick(&mut world, (body, fx!(0)), &mover, &state);
+                let case = format!("{name}, {rate} Hz, {spin} rad/s, tick {number}");
+                assert!(state.is_on_ground() || number < 2, "{case}: {state:?}");
+            }
+        }
+    }
+}
+
+/// Vertices of a valley, each of which turns by 1e-4 rad: a smaller turn than the gap of a cast shows at once.
+#[test]
+fn characters_walk_through_flat_valleys() {
+    let height = |x: Fx| x * x / 2000;
+    let points: Vec<_> = (-500..=500).rev().map(|i| Fx::from_num(i) / 10).map(|x| at(x, height(x))).collect();
+    for (name, shape) in shapes() {
+        let mut world = world(60);
+        let links = Chain::new(&points).one_sided().links().expect("valid");
+        world.spawn(&BodyDef::fixed(), &links).expect("valid");
+        let mover = Mover::new(shape).expect("valid");
+        let mut state = MoverState::at(at(fx!(0), fx!(0.75)));
+        for number in 0..1800 {
+            world.step();
+            state.velocity = at(fx!(1), state.velocity.y - fall(60));
+            state = world.move_character(&mover, &state, QueryFilter::default()).state;
+            let above = feet(&state) - height(state.position.x);
+            assert!(above > fx!(-0.005), "{name}, tick {number}: {above} m at {}", state.position.x);
+        }
+        assert!(state.position.x > fx!(25), "{name}: {state:?}");
+    }
+}
+
+/// The jump ends in every part of the platform. A character that turns round in it falls back, also if it is saved
+/// half-way.
+#[test]
+fn characters_turn_round_inside_platforms() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        for speed in 10..60 {
+            let mut world = world(60);
+            let body = world.spawn(&BodyDef::fixed(), &platform).expect("valid");
+            let mover = Mover::new(shape).expect("valid");
+            let speed = Fx::from_num(speed) / 8;
+            // The head begins 10 cm below the platform.
+            let mut state = MoverState::at(at(fx!(0.1), fx!(-1)));
+            state.velocity.y = speed;
+            let mut highest = Fx::MIN;
+            let mut last = state.position.y;
+            for _ in 0..120 {
+                let mut next = tick(&mut world, (body, fx!(0)), &mover, &state);
+                // No platform throws the character up.
+                assert!(
+                    next.position.y - last <= speed / 60,
+                    "{name} at {speed} m/s: from {last} to {next:?}"
+                );
+                next = lockstep2d::codec::decode(&lockstep2d::codec::encode(&next)).expect("its own bytes");
+                (last, state) = (next.position.y, next);
+                highest = highest.max(feet(&state));
+            }
+            let lands = highest > 0;
+            assert_eq!(state.is_on_ground(), lands, "{name} at {speed} m/s: highest at {highest}, {state:?}");
+        }
+    }
+}
