@@ -276,15 +276,17 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass and keeps the pose and the motion, except for clamped speeds and locked degrees of freedom.
+    /// Changes the mass and keeps the pose, the motion and the lines of action of forces, except for clamped speeds and
+    /// locked degrees of freedom.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
         self.mass = mass;
         self.set_transform(position, angle);
         self.set_angular_velocity(omega);
-        let moved = (self.centre - old_centre).perp().scale(omega);
-        self.velocity = (self.velocity() + moved).narrow();
+        let moved = self.centre - old_centre;
+        self.torque = self.torque.saturating_sub(moved.cross(self.force));
+        self.velocity = (self.velocity() + moved.perp().scale(omega)).narrow();
         self.clamp_velocity();
     }
 

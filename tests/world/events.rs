@@ -246,3 +246,42 @@ fn a_hit_of_a_spinning_ball_has_the_speed_along_the_normal() {
         }
     }
 }
+
+/// Boxes on a slope move as they do when their definitions are set without a change.
+#[test]
+fn switching_events_changes_no_motion() {
+    let play = |switches: bool, floor_reports: bool| {
+        let mut world = World::default();
+        let floor = rectangle(fx!(20), fx!(1));
+        let silent = EventSwitches { contact: false, ..EventSwitches::default() };
+        let floor = if floor_reports { floor } else { floor.events(silent) };
+        let slope = Angle::from_degrees(fx!(40));
+        spawn(&mut world, BodyDef::fixed().angle(slope), floor);
+        let at = |x: Fx| BodyDef::dynamic().position((x, fx!(3) + x));
+        let boxes = [fx!(0), fx!(1.5), fx!(3)].map(|x| spawn(&mut world, at(x), square(fx!(0.5))));
+        run(&mut world, 60);
+        let mut told = [0; 2];
+        for tick in 0..60 {
+            let id = shape_of(&world, boxes[1]);
+            let mut def = *world.shape(id).expect("there").def();
+            def.events.contact ^= switches;
+            world.set_shape(id, &def).expect("valid");
+            assert_eq!(world.validate(), Ok(()));
+            run(&mut world, 1);
+            let events = world.events();
+            told[0] += events.contact_begin.len() + events.contact_end.len();
+            let is_other = |pair: &&ContactEvent| pair.shape_a != id && pair.shape_b != id;
+            told[1] += events.contact_begin.iter().chain(&events.contact_end).filter(is_other).count();
+            if tick == 30 {
+                world = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+            }
+        }
+        (boxes.map(|id| world.body(id).map(|body| (body.position(), body.velocity(), body.angle()))), told)
+    };
+    for floor_reports in [true, false] {
+        let (plain, told) = (play(false, floor_reports), play(true, floor_reports));
+        assert_eq!(plain.0, told.0);
+    }
+    assert_eq!(play(false, true).1, play(true, true).1, "one shape that reports the pair is enough");
+    assert!(play(false, false).1[0] < play(true, false).1[0], "each switch begins or ends contacts");
+}

@@ -6,7 +6,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::solver::{JointDef, Motor};
 use lockstep2d::world::Explosion;
 
-use super::{ball, spawn, weightless};
+use super::{ball, spawn, square, weightless};
 
 fn direction_is(v: Vec2<Fx>, expected: (Fx, Fx)) {
     let sine = v.normalized().expect("fast").widen().cross(Vec2::from(expected));
@@ -42,4 +42,17 @@ fn a_motor_pushes_in_the_direction_of_its_velocity() {
     world.add_joint(&JointDef::new(wall, id, motor)).expect("valid");
     world.step();
     direction_is(world.body(id).expect("there").velocity(), (fx!(0.894427), fx!(0.447214)));
+}
+
+/// A force keeps its line of action when the centre of mass moves: here onto that line.
+#[test]
+fn a_force_acts_at_its_point_although_the_mass_changes() {
+    let mut world = weightless();
+    let id = spawn(&mut world, BodyDef::dynamic(), square(fx!(0.5)));
+    world.apply_force(id, (fx!(0), fx!(10)), (fx!(0.5), fx!(0))).expect("there");
+    world.add_shape(id, &square(fx!(0.5)).offset((fx!(1), fx!(0)))).expect("valid");
+    world.step();
+    let body = world.body(id).expect("there");
+    assert!((body.velocity().y - fx!(5) / 60).abs() < fx!(0.0001), "{}", body.velocity().y);
+    assert!(body.angular_velocity().abs() < fx!(0.0001), "{}", body.angular_velocity());
 }

@@ -19,6 +19,7 @@ mod rollback;
 mod sensors;
 mod setters;
 mod settings;
+mod sleep_edits;
 mod sleeping;
 mod woken_crowd;
 

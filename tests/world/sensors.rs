@@ -225,3 +225,29 @@ fn filters_and_switches_hide_from_sensors() {
     assert_eq!(noticed(zone().events(silent), ball(fx!(0.2)).events(silent)), 1);
     assert_eq!(noticed(zone(), rectangle(fx!(30), Fx::ONE)), 1, "a visitor larger than the sensor");
 }
+
+/// Switches of contact and hit events end no visit, and neither do switches that change nothing for the pair.
+#[test]
+fn a_switch_of_other_events_ends_no_visit() {
+    let switches: [fn(&mut EventSwitches); 3] =
+        [|events| events.contact = false, |events| events.hit = true, |events| events.detect_sensors = true];
+    for switch in switches {
+        for settle in [true, false] {
+            let (mut world, sensor, visitor, _) = sleeper_inside();
+            if !settle {
+                world.wake(visitor).expect("there");
+                run(&mut world, 1);
+            }
+            for id in [visitor, sensor] {
+                let id = shape_of(&world, id);
+                let mut def = *world.shape(id).expect("there").def();
+                switch(&mut def.events);
+                world.set_shape(id, &def).expect("valid");
+                assert_eq!(world.validate(), Ok(()));
+                let mut restored = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+                assert_eq!(Log::of(&mut world, 30), Log::default());
+                assert_eq!(Log::of(&mut restored, 30), Log::default());
+            }
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;
-use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef, Revolute, SolverSettings};
 use lockstep2d::world::{Config, World};
 
@@ -206,5 +206,26 @@ fn settings_that_change_and_change_back_within_a_tick_leave_nothing_in_the_cache
         run(&mut world, 5);
         run(&mut copy, 5);
         assert_eq!(world.state_hash(), copy.state_hash(), "4, {sub_steps} and 4 sub-steps");
+    }
+}
+
+/// A kinematic body reaches its target in the next tick also if that tick has another length, with the velocity of this
+/// path.
+#[test]
+fn a_target_is_reached_at_another_tick_rate() {
+    for rate in [30u32, 120] {
+        let mut world = super::weightless();
+        let id = super::spawn(&mut world, BodyDef::kinematic(), square(fx!(0.5)));
+        world.move_to(id, (fx!(0.5), fx!(-0.25)), Angle::from_radians(fx!(0.1))).expect("in reach");
+        set(&mut world, |config| config.tick_rate = rate);
+        assert_eq!(world.validate(), Ok(()));
+        let body = world.body(id).expect("there");
+        let (speed, turning) = (fx!(0.5) * i64::from(rate), fx!(0.1) * i64::from(rate));
+        assert!(
+            (body.velocity() - Vec2::new(speed, -speed / 2)).length() < fx!(0.001),
+            "{}",
+            body.velocity()
+        );
+        assert!((body.angular_velocity() - turning).abs() < fx!(0.001), "{}", body.angular_velocity());
     }
 }

@@ -239,16 +239,20 @@ impl BroadPhase {
         self.search(Overlap { area, visit });
     }
 
-    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies.
-    pub(crate) fn each_fixed_overlap(&self, area: Aabb, mut visit: impl FnMut(u32) -> ControlFlow<()>) {
+    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies, or for those of all others.
+    pub(crate) fn each_overlap_of(
+        &self,
+        fixed: bool,
+        area: Aabb,
+        mut visit: impl FnMut(u32) -> ControlFlow<()>,
+    ) {
         if let Structure::Trees(trees) = &self.structure {
-            let _ended_early = trees.search_fixed(&mut Overlap { area, visit });
+            let _ended_early = trees.search_of(fixed, &mut Overlap { area, visit });
             return;
         }
-        self.each_overlap(
-            area,
-            |slot| if self.is_fixed(slot) { visit(slot) } else { ControlFlow::Continue(()) },
-        );
+        self.each_overlap(area, |slot| {
+            if self.is_fixed(slot) == fixed { visit(slot) } else { ControlFlow::Continue(()) }
+        });
     }
 
     /// Visits every slot whose box the area touches while it moves, and perhaps some that it just misses. Nearer boxes

@@ -218,14 +218,16 @@ fn overlaps_are_those_of_every_box() {
                 found.sort_unstable();
                 assert_eq!(found, expected, "{:?}", kind.kind());
 
-                found.clear();
-                kind.each_fixed_overlap(area, |slot| {
-                    found.push(slot);
-                    ControlFlow::Continue(())
-                });
-                found.sort_unstable();
-                let fixed = expected.iter().copied().filter(|&slot| crowd.fixed[slot as usize]);
-                assert!(fixed.eq(found), "{:?}", kind.kind());
+                for fixed in [true, false] {
+                    found.clear();
+                    kind.each_overlap_of(fixed, area, |slot| {
+                        found.push(slot);
+                        ControlFlow::Continue(())
+                    });
+                    found.sort_unstable();
+                    let slots = expected.iter().filter(|&&slot| crowd.fixed[slot as usize] == fixed);
+                    assert!(slots.eq(&found), "{:?}", kind.kind());
+                }
 
                 let mut visits = 0;
                 kind.each_overlap(area, |_| {

@@ -103,8 +103,8 @@ impl Trees {
         self.fixed.search(search)
     }
 
-    pub(super) fn search_fixed(&self, search: &mut impl Search) -> ControlFlow<()> {
-        self.fixed.search(search)
+    pub(super) fn search_of(&self, fixed: bool, search: &mut impl Search) -> ControlFlow<()> {
+        if fixed { self.fixed.search(search) } else { self.moving.search(search) }
     }
 
     pub(super) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {

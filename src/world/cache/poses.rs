@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 use super::motion::MotionCache;
 use super::pose_range::PoseRange;
 use crate::body::{Body, Geometry, Handle};
-use crate::collision::{PosedShape, SmallBoxes};
+use crate::collision::{Pair, PosedShape, SmallBoxes, SupportShape, distance};
 use crate::fx;
 use crate::math::{Aabb, Fx};
 use crate::simd::prefetch;
@@ -119,6 +119,13 @@ impl Poses {
     #[inline]
     pub(crate) fn prefetch(&self, shape: u32) {
         prefetch(&self.shapes[shape as usize]);
+    }
+
+    /// Whether two shapes are at most `reach` metres apart.
+    pub(crate) fn are_within(&self, (a, b): Pair, reach: Fx) -> bool {
+        let (a, b) = (self.at(a), self.at(b));
+        a.bounds.expanded(reach).overlaps(b.bounds)
+            && distance(&SupportShape::of(a, b.centre), &SupportShape::of(b, b.centre)).distance <= reach
     }
 
     #[inline]

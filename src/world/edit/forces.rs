@@ -109,14 +109,17 @@ impl World {
             return Err(WorldError::WrongKind(id));
         }
         self.check_velocity(velocity, angular, body.radius_of_gyration())?;
-        wake_body(&mut self.state, &mut self.scratch, id.slot());
         let body = self.state.bodies.at_mut(id.slot());
-        let was_moving = body.is_moving();
         body.target = None;
         body.velocity = velocity.narrow();
         body.set_angular_velocity(angular);
         body.hold_locked_axes();
-        if !body.is_dynamic() && body.is_moving() && !was_moving {
+        let (is_dynamic, moves) = (body.is_dynamic(), body.is_moving());
+        // A kinematic body that is told to stay where it is wakes nothing.
+        if is_dynamic || moves {
+            wake_body(&mut self.state, &mut self.scratch, id.slot());
+        }
+        if !is_dynamic && moves {
             wake_joined(&mut self.state, &mut self.scratch, id);
         }
         Ok(())
@@ -125,7 +128,7 @@ impl World {
     /// Sets the pose that a kinematic body reaches in the next tick: the position of its origin in metres, and its
     /// rotation. The body pushes dynamic bodies on its way, and stops at the target unless it gets another target. The
     /// body rotates in the direction of the smaller angle. [`Body::velocity`] is that of the way until the next step,
-    /// and 0 after it, even if the body gets a target in every tick.
+    /// and 0 after it, even if the body gets a target in every tick. A target at its own pose wakes nothing.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose is

@@ -4,16 +4,15 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::body::{
-    Area, BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassProperties,
-    MassSource, Material, Name, ShapeDef, ShapeId, WorldError,
+    Area, BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, MassProperties, MassSource, Material,
+    Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
 use crate::world::World;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{
-    contact_ended, put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching,
-};
+use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching};
+use crate::world::state::State;
 
 impl World {
     /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body.
@@ -185,7 +184,8 @@ impl World {
     }
 
     /// Puts a dynamic body to sleep at any velocity, with the dynamic bodies that contacts, joints and areas connect to
-    /// it. Does nothing if [`crate::world::Config::sleeping`] is off.
+    /// it. Does nothing if [`crate::world::Config::sleeping`] is off, or if a joint connects one of these bodies to a
+    /// moving kinematic body. Contacts are those of the last tick whose shapes still meet after all edits.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
@@ -201,8 +201,8 @@ impl World {
     }
 
     /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
-    /// from its shapes, unless the mass was given. A change of `sensor` or of the event switches may end the contacts
-    /// of the shape.
+    /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. A change of
+    /// the event switches reports the ends of pairs that are no longer reported, and begins of those that now are.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value or the mass of a dynamic body is out of range, an area is not
@@ -220,22 +220,13 @@ impl World {
             .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
-        // A reported beginning of a contact needs a reported end.
-        let roles = |def: &ShapeDef| {
-            let EventSwitches { contact, hit: _, sensor, detect_sensors } = def.events;
-            (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
-        };
-        let changes_events = roles(&shape.def) != roles(def);
-        let changes_area = shape.def.area != def.area;
+        let changes_sensor = shape.def.sensor != def.sensor;
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
         self.prepare_mass(body, &mass);
-        if changes_area {
-            self.release_visitors(id.slot());
-        }
-        if changes_events {
+        if changes_sensor {
             self.end_contacts(&[id]);
         }
-        *self.state.shapes.redefine(id.slot()).def = *def;
+        self.redefine_shape(id.slot(), def);
         self.end_manifolds(slot);
         self.replace_mass(slot, mass);
         self.refit_body(slot);
@@ -305,14 +296,28 @@ impl World {
         }
     }
 
-    /// Restarts the counts of ticks at rest of the bodies in an area that is about to change and may hold them.
-    fn release_visitors(&mut self, area: u32) {
+    /// Replaces a definition. A pair that it reports differently ends, and begins anew in the next tick.
+    fn redefine_shape(&mut self, slot: u32, def: &ShapeDef) {
         self.spend_scan();
-        let is_visit =
-            |contact: &&Contact| contact.touching && (contact.shapes.0 == area || contact.shapes.1 == area);
-        let contacts = self.state.contacts.iter().chain(self.state.sleeping_contacts.iter());
-        let visits: Vec<_> = contacts.filter(is_visit).map(|contact| contact.shapes).collect();
-        visits.into_iter().for_each(|pair| contact_ended(&mut self.state, pair));
+        let list_reported = |state: &State| -> Vec<_> {
+            let contacts = state.contacts.iter().chain(state.sleeping_contacts.iter());
+            let touching = contacts
+                .filter(|contact| contact.touching && (contact.shapes.0 == slot || contact.shapes.1 == slot));
+            touching.map(|contact| (contact.shapes, state.reported(contact))).collect()
+        };
+        let before = list_reported(&self.state);
+        *self.state.shapes.redefine(slot).def = *def;
+        let after = list_reported(&self.state);
+        let State { contacts, sleeping_contacts, removed_contacts, .. } = &mut *self.state;
+        for ((pair, old), _) in before.into_iter().zip(after).filter(|(old, new)| old != new) {
+            removed_contacts.extend(old);
+            let find = |list: &[Contact]| list.binary_search_by_key(&pair, |contact| contact.shapes).ok();
+            if let Some(index) = find(contacts) {
+                contacts[index].touching = false;
+            } else if let Some(index) = find(sleeping_contacts) {
+                sleeping_contacts[index].touching = false;
+            }
+        }
     }
 
     /// Replaces the mass of a body. Drops its manifolds, because lever arms are relative to the centre of mass.

@@ -1,6 +1,6 @@
 use alloc::vec::Vec;
 
-use crate::body::{IslandId, WorldError};
+use crate::body::{IslandId, SPEED_MAX, WorldError};
 use crate::math::{Fx, Speed, Vec2, div_round, saturate, saturate_wide};
 use crate::solver::{IMPULSE_MAX, SolverSettings};
 use crate::world::World;
@@ -44,6 +44,7 @@ impl World {
         }
         let rate = |config: &Config| config.tick_rate.saturating_mul(config.solver.sub_steps);
         self.convert_impulses(rate(&old), rate(config));
+        self.convert_targets(old.tick_rate, config.tick_rate);
         self.state.config = *config;
         // The restitution threshold of the world is part of the cached surface of a pair.
         self.scratch.contacts.invalidate_surfaces();
@@ -73,16 +74,23 @@ impl World {
         }
     }
 
+    /// Converts the velocities of kinematic bodies that reach their targets in the next tick.
+    fn convert_targets(&mut self, old_rate: u32, new_rate: u32) {
+        if old_rate == new_rate {
+            return;
+        }
+        let convert = |speed: &mut Speed| *speed = scaled(*speed, new_rate, old_rate, SPEED_MAX);
+        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.target.is_some()) {
+            [&mut body.velocity.x, &mut body.velocity.y, &mut body.spin].into_iter().for_each(convert);
+        }
+    }
+
     /// Converts impulses to another rate, in sub-steps per second, so that the forces stay the same.
     fn convert_impulses(&mut self, old_rate: u32, new_rate: u32) {
         if old_rate == new_rate {
             return;
         }
-        let convert = |impulse: &mut Speed| {
-            let bits = i128::from(impulse.to_bits()) * i128::from(old_rate);
-            let bits = saturate(saturate_wide(div_round(bits, new_rate.into())));
-            *impulse = Speed::from_bits(bits).clamp(-IMPULSE_MAX, IMPULSE_MAX);
-        };
+        let convert = |impulse: &mut Speed| *impulse = scaled(*impulse, old_rate, new_rate, IMPULSE_MAX);
         let state = &mut *self.state;
         // The sandbox charges a command for active contacts and for joints, but not for sleeping contacts.
         self.scratch.meter.spend(u64::try_from(state.sleeping_contacts.len()).unwrap_or(u64::MAX));
@@ -98,6 +106,12 @@ impl World {
         }
         state.joints.note_change();
     }
+}
+
+/// `value * factor / divisor`, clamped to ±`max`.
+fn scaled(value: Speed, factor: u32, divisor: u32, max: Speed) -> Speed {
+    let bits = div_round(i128::from(value.to_bits()) * i128::from(factor), divisor.into());
+    Speed::from_bits(saturate(saturate_wide(bits))).clamp(-max, max)
 }
 
 /// Whether bodies at rest may move with the new settings.

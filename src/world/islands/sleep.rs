@@ -1,18 +1,41 @@
 use alloc::vec::Vec;
 
-use crate::body::Handle;
+use crate::body::{BodyKind, Handle};
 use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
-use crate::world::cache::{Scratch, UnionFind, is_awake, merge_sorted};
+use crate::world::cache::{AwakeSet, NARROW_PHASE_WORK, Scratch, UnionFind, is_awake, merge_sorted};
 use crate::world::state::{Island, State};
 
-/// Puts a body to sleep with the awake bodies connected to it.
+/// Puts a body to sleep with the awake bodies connected to it, unless a joint connects them to a moving kinematic body.
 pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.awake.refresh(state);
-    unite_connected(state, scratch);
+    scratch.pairs.non_colliding.refresh(state);
+    let Scratch { awake, union, pairs, shapes, meter, .. } = &mut *scratch;
+    unite_joined(state, awake, union);
     // Bodies woken since the last tick have contacts in the list of sleeping contacts.
-    unite_touching(state, &mut scratch.union, &state.sleeping_contacts);
-    let Scratch { awake, union, .. } = &mut *scratch;
+    for contact in state.contacts.iter().chain(state.sleeping_contacts.iter()) {
+        let (a, b) = state.bodies_of(contact.shapes);
+        if !(connects(state, contact) && is_awake(a) && is_awake(b)) {
+            continue;
+        }
+        meter.spend(NARROW_PHASE_WORK);
+        // Edits since the last tick may have parted the bodies.
+        let reach = if contact.count > 0 { state.config.speculative_distance } else { Fx::ZERO };
+        if pairs.non_colliding.may_touch(state, contact.shapes)
+            && shapes.poses().are_within(contact.shapes, reach)
+        {
+            unite_bodies(state, union, contact);
+        }
+    }
+    for &joint in awake.joints() {
+        let (a, b) = state.joints.at(joint).def().bodies();
+        for (anchor, other) in [(a, b), (b, a)] {
+            let anchor = state.bodies.at(anchor.slot());
+            if anchor.kind() == BodyKind::Kinematic && anchor.is_moving() {
+                union.keep_awake(other.slot());
+            }
+        }
+    }
     let root = union.root(slot);
     for &other in awake.bodies() {
         if union.root(other) != root {
@@ -24,22 +47,33 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
 
 pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = scratch;
+    unite_joined(state, awake, union);
+    unite_touching(state, union, &state.contacts);
+}
+
+fn unite_joined(state: &State, awake: &AwakeSet, union: &mut UnionFind) {
     union.reset(awake.bodies(), state.bodies.slot_count());
     for &joint in awake.joints() {
         let (a, b) = state.joints.at(joint).def().bodies();
         unite(state, union, a.slot(), b.slot());
     }
-    unite_touching(state, union, &state.contacts);
 }
 
 /// Unites the bodies of contacts with points, and the bodies of areas with the bodies on which the areas act.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
-    let connects =
-        |contact: &&Contact| contact.count > 0 || (contact.touching && state.has_area(contact.shapes));
-    for contact in contacts.iter().filter(connects) {
-        let (a, b) = contact.shapes;
-        unite(state, union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
-    }
+    contacts
+        .iter()
+        .filter(|contact| connects(state, contact))
+        .for_each(|contact| unite_bodies(state, union, contact));
+}
+
+fn connects(state: &State, contact: &Contact) -> bool {
+    contact.count > 0 || (contact.touching && state.has_area(contact.shapes))
+}
+
+fn unite_bodies(state: &State, union: &mut UnionFind, contact: &Contact) {
+    let (a, b) = contact.shapes;
+    unite(state, union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
 }
 
 pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {

@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use crate::body::{BodyId, BodyKind, Handle, IslandId};
+use crate::body::{BodyId, Handle, IslandId};
 use crate::collision::{Contact, Pair};
 use crate::world::cache::Scratch;
 use crate::world::state::State;
@@ -22,19 +22,27 @@ pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: Isla
     scratch.awake.invalidate();
 }
 
-/// Wakes a body with its island, and restarts its count of ticks at rest.
+/// Wakes a body with its island, and restarts its count of ticks at rest. A resting kinematic body becomes active for a
+/// tick, which wakes all islands on it.
 pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.pairs.changes.compact();
     let body = state.bodies.at_mut(slot);
-    let was_active = body.is_active();
+    let was_settled = !body.is_dynamic() && body.rest_ticks.has_settled();
     body.rest_ticks.reset();
     match body.island {
         Some(island) => wake_island(state, scratch, island),
-        None if body.is_active() && !was_active => {
+        None if was_settled => {
             scratch.pairs.changes.body_changed(body);
             scratch.pairs.changes.sleeping_contacts_changed();
         }
         None => {}
+    }
+}
+
+/// Wakes a body after a change beside it that does not concern a kinematic body.
+fn wake_dynamic(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    if state.bodies.at(slot).is_dynamic() {
+        wake_body(state, scratch, slot);
     }
 }
 
@@ -49,7 +57,8 @@ pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     }
 }
 
-/// Wakes a body and the bodies whose fat boxes overlap its own. Called before and after a change of fat boxes.
+/// Wakes a body and the bodies whose fat boxes overlap its own, and restarts their counts of ticks at rest. Called before
+/// and after a change of fat boxes.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
     for index in 0..state.bodies.at(slot).shapes().len() {
@@ -59,23 +68,21 @@ pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u
 }
 
 pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, shape: u32) {
-    // Only sleeping bodies and resting kinematic bodies can be woken. Most worlds that are being set up have neither.
-    if state.islands.len() == 0 && !scratch.awake.may_have_kinematic() {
-        return;
-    }
     let (mut neighbours, mut visited) = (Vec::new(), 0u64);
-    scratch.shapes.broad_phase().each_overlap(state.shapes.at(shape).fat, |other| {
+    let is_dynamic = state.body_of(shape).is_dynamic();
+    scratch.shapes.broad_phase().each_overlap_of(false, state.shapes.at(shape).fat, |other| {
         visited += 1;
-        let slot = state.shapes.at(other).body().slot();
-        let body = state.bodies.at(slot);
-        if body.kind() != BodyKind::Fixed && !body.is_active() {
-            neighbours.push(slot);
+        // A resting kinematic body has to be active only for sensor events of two bodies that do not move.
+        let is_sensed = || !is_dynamic && state.sensor_of((shape, other)).is_some();
+        if state.body_of(other).is_dynamic() || is_sensed() {
+            neighbours.push(state.shapes.at(other).body().slot());
         }
         ControlFlow::Continue(())
     });
     scratch.meter.spend(visited / VISITS_PER_WORK);
     // The broad phase visits boxes in no defined order.
     neighbours.sort_unstable();
+    neighbours.dedup();
     for body in neighbours {
         wake_body(state, scratch, body);
     }
@@ -93,7 +100,7 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
     };
     let touching: Vec<u32> = state.sleeping_contacts.iter().filter_map(other_body).collect();
     for body in touching {
-        wake_body(state, scratch, body);
+        wake_dynamic(state, scratch, body);
     }
 }
 
@@ -104,7 +111,7 @@ pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) 
     for joint in joints {
         let (a, b) = state.joints.at(joint.slot()).def().bodies();
         for body in [a, b] {
-            wake_body(state, scratch, body.slot());
+            wake_dynamic(state, scratch, body.slot());
         }
     }
 }
@@ -112,7 +119,7 @@ pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) 
 /// Wakes two bodies after a change of their joint that does not affect whether they may collide.
 pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
     for id in bodies {
-        wake_body(state, scratch, id.slot());
+        wake_dynamic(state, scratch, id.slot());
     }
     scratch.awake.invalidate();
 }
@@ -125,7 +132,7 @@ pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, mut bodie
     bodies.sort_unstable();
     bodies.dedup();
     for id in bodies {
-        wake_body(state, scratch, id.slot());
+        wake_dynamic(state, scratch, id.slot());
         scratch.pairs.changes.body_changed(state.bodies.at(id.slot()));
     }
     scratch.pairs.changes.rules_changed();

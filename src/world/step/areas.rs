@@ -6,7 +6,7 @@
 //! of its energy in each tick.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
-use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};
+use crate::collision::{Pair, RelativePose, Ring};
 use crate::math::{Angle, Fx, Rot, Vec2, fx_div, fx_mul};
 use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
@@ -56,13 +56,7 @@ pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
         state.shapes.at(area).acts_on(state.shapes.at(shape)) && state.body_of(shape).is_asleep()
     };
     let (a, b) = pair;
-    if !is_acted_on(a, b) && !is_acted_on(b, a) {
-        return false;
-    }
-    let (posed_a, posed_b) = (scratch.shapes.poses().at(a), scratch.shapes.poses().at(b));
-    let origin = posed_b.centre;
-    posed_a.bounds.overlaps(posed_b.bounds)
-        && overlap(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin))
+    (is_acted_on(a, b) || is_acted_on(b, a)) && scratch.shapes.poses().are_within(pair, Fx::ZERO)
 }
 
 /// Time in seconds for which poses are predicted.

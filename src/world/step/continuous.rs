@@ -200,7 +200,7 @@ fn first_impact(
         if sees_moving {
             shapes.broad_phase().each_overlap(area, visit);
         } else {
-            shapes.broad_phase().each_fixed_overlap(area, visit);
+            shapes.broad_phase().each_overlap_of(true, area, visit);
         }
         // Visits are counted after the search of a shape, which may therefore exceed the budget. It visits at most all
         // shapes of the world.
