@@ -108,6 +108,35 @@ static void definitions(ls2d_handle world) {
     EXPECT(ls2d_despawn(world, 99), LS2D_STALE_BODY);
 }
 
+/* An edit whose result cannot be written changes nothing. */
+static void results(ls2d_handle world, const ls2d_body_def *body) {
+    uint64_t memory[2] = {0, 0};
+    char *odd = (char *)memory + 1;
+    ls2d_handle list;
+    ls2d_shape_def shape;
+    ls2d_joint_def joint;
+    ls2d_hash before, after;
+    EXPECT(ls2d_commands_new(&list), LS2D_OK);
+    EXPECT(ls2d_spawn(list, body, NULL, 0, NULL), LS2D_OK);
+    EXPECT(ls2d_shape_def_init(LS2D_CIRCLE, &shape), LS2D_OK);
+    shape.radius = LS2D_FX(1);
+    EXPECT(ls2d_joint_def_init(LS2D_WELD, &joint), LS2D_OK);
+    joint.body_a = 0;
+    joint.body_b = 1;
+    EXPECT(ls2d_world_hash(world, &before), LS2D_OK);
+    EXPECT(ls2d_spawn(world, body, NULL, 0, (ls2d_body *)odd), LS2D_MISALIGNED);
+    EXPECT(ls2d_add_shape(world, 0, &shape, (ls2d_shape *)odd), LS2D_MISALIGNED);
+    EXPECT(ls2d_add_joint(world, &joint, (ls2d_joint *)odd), LS2D_MISALIGNED);
+    EXPECT(ls2d_world_execute(world, list, (uint32_t *)odd), LS2D_MISALIGNED);
+    EXPECT(ls2d_world_hash(world, &after), LS2D_OK);
+    if (memcmp(&before, &after, sizeof before) != 0) {
+        fprintf(stderr, "an edit that was refused has changed the world\n");
+        exit(1);
+    }
+    EXPECT(ls2d_free(list), LS2D_OK);
+    EXPECT(ls2d_set_name(world, 0, (const uint8_t *)"ab\0cd", 5), LS2D_NAME);
+}
+
 static void *thread(void *argument) {
     ls2d_handle shared = *(ls2d_handle *)argument, own;
     int i;
@@ -134,6 +163,7 @@ int main(void) {
     EXPECT(ls2d_spawn(world, &body, NULL, 0, NULL), LS2D_OK);
     EXPECT(ls2d_spawn(world, &body, NULL, 0, NULL), LS2D_OK);
     buffers(world);
+    results(world, &body);
     definitions(world);
     for (i = 0; i < 4; i++) {
         pthread_create(&threads[i], NULL, thread, &world);

@@ -16,40 +16,53 @@ local function collect()
     end
 end
 
---- `latency(step)` is in steps of `INTERVAL`, 1 by default; `read(seats)` is random by default.
-local function play(new_game, ticks, latency, read, guess)
+--- Two peers, and the packets between them. `changes` are changes of the settings.
+local function connect(new_game, changes)
     local peers, flying = {}, {}
     for index = 1, 2 do
+        local settings = { guess = 6, start_with = Game.SEATS, key = index, check_interval = 1, save_interval = 1 }
+        for field, value in pairs(changes or {}) do
+            settings[field] = value
+        end
         peers[index] = Driver.new({
             seats = Game.SEATS,
             offer = Game.OFFER,
             contact = index == 2 and "1" or nil,
-            settings = {
-                guess = guess or 6, start_with = Game.SEATS, key = index, check_interval = 1, save_interval = 1,
-            },
-            game = new_game(),
+            settings = settings,
+            game = new_game(index),
             send = function(to, packet)
                 flying[#flying + 1] = { to = tonumber(to), from = tostring(index), packet = packet }
             end,
         })
     end
+    --- Delivers packets after `delay` steps.
+    local function deliver(step, delay)
+        local sent = flying
+        flying = {}
+        for _, each in ipairs(sent) do
+            each.at = each.at or step - 1 + delay
+            if each.at <= step then
+                peers[each.to]:receive(step * INTERVAL / 1000, each.from, each.packet)
+            else
+                flying[#flying + 1] = each
+            end
+        end
+    end
+    return peers, deliver
+end
+
+--- `latency(step)` is in steps of `INTERVAL`, 1 by default; `read(seats)` is random by default.
+local function play(new_game, ticks, latency, read, guess)
+    local peers, deliver = connect(new_game, { guess = guess })
     local random = 1
     read = read or function()
         random = (random * 69069 + 1) % 4294967296
         return string.char(math.floor(random / 65536) % 8)
     end
     for step = 0, 100000 do
-        local now, sent = step * INTERVAL / 1000, flying
-        flying = {}
-        for _, each in ipairs(sent) do
-            each.at = each.at or step - 1 + (latency and latency(step) or 1)
-            if each.at <= step then
-                peers[each.to]:receive(now, each.from, each.packet)
-            else
-                flying[#flying + 1] = each
-            end
-        end
+        deliver(step, latency and latency(step) or 1)
         for _, peer in ipairs(peers) do
+            local now = step * INTERVAL / 1000
             for _, event in ipairs(peer:update(now, function(seats) return read(seats, peer) end)) do
                 assert(event.kind ~= ls.EVENT_DESYNC, "the states differ at tick " .. event.tick)
             end
@@ -120,4 +133,88 @@ assert(plain.peer == 0x01010101 and plain.key == ones and plain.secret[0] == one
 assert(given.peer == 7 and given.key == 8, "settings are overwritten")
 assert(given.secret[0] == 9 and given.secret[1] == 10, "settings are overwritten")
 
-print("driver: equal states in spite of garbage collections, and the chosen key")
+ls.match_host = host
+
+local function zero()
+    return "\0"
+end
+
+local function raises(text, peer, step, read)
+    local done, why = pcall(peer.update, peer, step * INTERVAL / 1000, read)
+    assert(not done and tostring(why):match(text), tostring(why))
+end
+
+-- After an error of the game, whose state then lacks a tick, nothing is played.
+local broken, steps = Game.new(), 0
+function broken.step()
+    steps = steps + 1
+    assert(steps ~= 20, "the rules failed")
+end
+local alone = Driver.new({ seats = 1, offer = "", game = broken, send = print })
+for step = 0, 1000 do
+    if not pcall(alone.update, alone, step * INTERVAL / 1000, zero) then
+        break
+    end
+end
+for step = 1001, 1200 do
+    raises("the rules failed", alone, step, zero)
+end
+assert(steps == 20 and alone.tick == 19, steps .. " steps, tick " .. alone.tick)
+
+-- While inputs are missing, events are kept, and others can join.
+for text, wrong in pairs({
+    ["no gamepad"] = function() error("no gamepad") end,
+    ["ls2d_match_advance"] = function() return "\0\0" end,
+}) do
+    local both, deliver = connect(Game.new, { start_with = 1 })
+    local failures, seats = 0, {}
+    local function step_all(from, to, read)
+        for step = from, to do
+            deliver(step, 1)
+            local done, result = pcall(both[1].update, both[1], step * INTERVAL / 1000, read)
+            assert(done or tostring(result):match(text), tostring(result))
+            failures = failures + (done and 0 or 1)
+            for _, event in ipairs(done and result or {}) do
+                seats[event.kind == ls.EVENT_SEATED and event.seat or event.kind] = event.kind
+            end
+            both[2]:update(step * INTERVAL / 1000, zero)
+        end
+    end
+    step_all(0, 300, wrong)
+    assert(both[1].tick == 0 and failures > 200, failures .. " failures")
+    assert(both[2]:status() ~= ls.MATCH_CONNECTING, "nobody can join")
+    step_all(301, 900, zero)
+    assert(both[1].tick > 60, "tick " .. both[1].tick)
+    assert(both[1]:status() == ls.MATCH_PLAYING and both[2]:status() == ls.MATCH_PLAYING)
+    assert(seats[1] == ls.EVENT_SEATED, "the seat of the guest")
+end
+
+-- Events of states that differ have the hashes.
+local both, deliver = connect(function(index)
+    local game = Game.new()
+    function game.hash()
+        return ffi.new("ls2d_hash", index, 7)
+    end
+    return game
+end)
+local desyncs = {}
+for step = 0, 500 do
+    deliver(step, 1)
+    for index, peer in ipairs(both) do
+        for _, event in ipairs(peer:update(step * INTERVAL / 1000, zero)) do
+            if event.kind == ls.EVENT_DESYNC then
+                assert(desyncs[index] == nil, "one event in each match")
+                desyncs[index] = event
+            end
+        end
+    end
+    collect()
+end
+for index, event in pairs(desyncs) do
+    local other = 3 - index
+    assert(event.ours.low == index and event.theirs.low == other and event.ours.high == 7, ls.hex(event.ours))
+    assert(event.peer ~= 0)
+end
+assert(desyncs[1] or desyncs[2], "the states differ")
+
+print("driver: equal states in spite of garbage collections, the chosen key, errors, and fields of events")

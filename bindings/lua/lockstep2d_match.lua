@@ -53,6 +53,7 @@ function Driver.new(options)
         send = options.send,
         tick = 0,
         saves = {},
+        events = {},
         unissued = {},
         size = ffi.new("size_t[2]"),
         capacity = tonumber(config.seats * config.input_bytes),
@@ -74,33 +75,42 @@ end
 
 --- Advances the match to the time `now` in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
 --- of your own seats as a string; `seats` is their number. Each result counts for one tick: forget key presses then.
---- `read` is called several times while the input delay grows. Returns a list of events.
+--- `read` is called several times while the input delay grows. Returns a list of events, whose fields are those of
+--- `ls2d_match_event`.
+---
+--- An error of `read` and inputs of a wrong length are raised once packets are sent. The match goes on with the next
+--- update, which returns all events. After any other error, such as one of the game, each update raises it.
 function Driver:update(now, read)
+    local failure = self.failure
+    if not failure then
+        local done, result = pcall(self.run, self, now, read)
+        if done and not result then
+            local events = self.events
+            self.events = {}
+            return events
+        end
+        failure = done and result or { why = result }
+        self.failure = not done and failure or nil
+    end
+    error(failure.why, 0)
+end
+
+function Driver:run(now, read)
     ls.match_update(self.match, now * 1e6)
-    local events = {}
     while ls.match_next_event(self.match, self.event) do
-        local event = { kind = self.event.kind, peer = self.event.peer, tick = self.event.tick, value = self.event.value }
+        local event = {}
+        for _, field in ipairs({ "kind", "peer", "seat", "tick", "value" }) do
+            event[field] = self.event[field]
+        end
+        -- Copies, because a field that is a struct is a reference.
+        event.ours, event.theirs = ffi.new("ls2d_hash", self.event.ours), ffi.new("ls2d_hash", self.event.theirs)
         if event.kind == ls.EVENT_STATE then
             self:resume(event.tick, ls.take_bytes(event.value))
         end
-        events[#events + 1] = event
+        self.events[#self.events + 1] = event
     end
     self:fulfil()
-    while self:is_due(now) do
-        local seats = self:seat_count()
-        -- Inputs that were read and not issued are passed again, so that a key press counts once.
-        local inputs = self.unissued[seats] or (seats > 0 and read(seats) or "")
-        self.unissued = {}
-        ls.match_advance(self.match, now * 1e6, inputs, #inputs, self.flag)
-        local issued, before = self.flag[0] == 1, self.tick
-        if not issued then
-            self.unissued[seats] = inputs
-        end
-        self:fulfil()
-        if not issued and self.tick == before then
-            break
-        end
-    end
+    local failure = self:play(now, read)
     ls.match_wants_state(self.match, self.flag)
     if self.flag[0] == 1 then
         self:offer_state()
@@ -111,7 +121,31 @@ function Driver:update(now, read)
         local sent, why = pcall(self.send, ffi.string(self.address, size[0]), ffi.string(self.packet, size[1]))
         self.send_error = not sent and why or self.send_error
     end
-    return events
+    return failure
+end
+
+-- Plays the ticks that are due. An error because of the inputs is returned: no inputs were issued, so the match is as
+-- before.
+function Driver:play(now, read)
+    while self:is_due(now) do
+        local seats = self:seat_count()
+        local issued, before = false, self.tick
+        local done, why = pcall(function()
+            -- Inputs that were read and not issued are passed again, so that a key press counts once.
+            local inputs = self.unissued[seats] or (seats > 0 and read(seats) or "")
+            self.unissued = {}
+            ls.match_advance(self.match, now * 1e6, inputs, #inputs, self.flag)
+            issued = self.flag[0] == 1
+            self.unissued[seats] = not issued and inputs or nil
+        end)
+        if not done then
+            return { why = why }
+        end
+        self:fulfil()
+        if not issued and self.tick == before then
+            return nil
+        end
+    end
 end
 
 function Driver:is_due(now)

@@ -45,7 +45,8 @@ impl Name {
         room.copy_from_slice(text.as_bytes());
         let name = Name { bytes };
         name.validate()?;
-        Ok(name)
+        // The padding would hide a zero at the end of the text.
+        if name.as_str() == text { Ok(name) } else { Err(WorldError::NameInvalid) }
     }
 
     /// The name as text.

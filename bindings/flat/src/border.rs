@@ -142,6 +142,11 @@ impl<'a, T: Plain> Out<'a, T> {
         check(self.0)
     }
 
+    /// Checks the pointer of a result that is lost if it is null.
+    pub(crate) fn check_if_wanted(&self) -> Outcome {
+        if self.0.is_null() { Ok(()) } else { self.check() }
+    }
+
     pub(crate) fn set(&mut self, value: T) -> Outcome {
         check(self.0)?;
         // SAFETY: not null and aligned; the caller promises that it points to memory for an item.

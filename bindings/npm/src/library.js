@@ -1,5 +1,5 @@
 // The wasm module: loading, memory, structs, handles.
-import { array, byteArray, count as u32Of, fail, integer, long, shown, string } from "./check.js";
+import { array, byteArray, count as u32Of, fail, flag, integer, long, onlyKnown, shown, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { Angle, Fx, bitsOf, rawOf, vectorOf } from "./fx.js";
 import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
@@ -32,14 +32,14 @@ async function inlined(load) {
 
 async function start(modules, options) {
     try {
-        await load(modules, options ?? {});
+        await load(modules, onlyKnown(options, ["simd", "wasm"], "`init`"));
     } catch (error) {
         throw error instanceof Lockstep2dError ? error : new Lockstep2dError("INIT", `the wasm module cannot be loaded: ${error.message}`);
     }
 }
 
 async function load(modules, { simd, wasm }) {
-    const chosen = simd ?? WebAssembly.validate(new Uint8Array(SIMD));
+    const chosen = flag(simd, "`simd`") ?? WebAssembly.validate(new Uint8Array(SIMD));
     let source = wasm ?? (await inlined(chosen ? modules.simd : modules.plain));
     if (typeof Response !== "undefined" && source instanceof Response) {
         source = await source.arrayBuffer();
@@ -53,7 +53,7 @@ async function load(modules, { simd, wasm }) {
 }
 
 /** Makes `init` for two inlined modules. Once `init` has succeeded, further calls of it change nothing. */
-export const initializer = (modules) => (options) => {
+export const initializer = (modules) => (options = {}) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;
         throw error;
@@ -243,6 +243,9 @@ function writeFields(name, at, values) {
             if (data.length > count) {
                 fail(`${field} has ${data.length} bytes, at most ${count} are possible`);
             }
+            if (data.includes(0)) {
+                fail(`${field} contains a zero character, and is ${shown(value)}`);
+            }
             memory().fill(0, at + offset, at + offset + count);
             memory().set(data, at + offset);
         } else if (count === undefined) {
@@ -302,12 +305,14 @@ export function takeBytes(handle) {
 
 export const text = (data) => DECODER.decode(data);
 
-let capacity = 64;
+// Bytes for the items of a list. Memory never shrinks, so a list of small items reserves nothing for one of large items.
+let room = 4096;
 
 /** Calls `ask`, which writes items of `size` bytes, with larger and larger buffers until they fit. Returns their
  * address and number. `prepare` writes other arguments to the `before` bytes in front of them. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
+        const capacity = Math.floor(room / size);
         const at = scratch(8 + before + capacity * size);
         prepare(at + 8);
         const status = ask(at + 8 + before, capacity, at, at + 8);
@@ -318,7 +323,7 @@ export function list(size, before, ask, prepare = () => {}) {
             }
             return { at: at + 8 + before, count: status === STATUS.NONE ? 0 : u32(at) };
         }
-        capacity = Math.max(u32(at), 2 * capacity);
+        room = Math.max(u32(at) * size, 2 * room);
     }
 }
 

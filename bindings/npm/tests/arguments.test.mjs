@@ -1,7 +1,8 @@
 // Wrong arguments give errors with a code and the name of the argument. WebAssembly would convert them to integers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { L } from "./common.mjs";
+import { library } from "../src/library.js";
+import { L, initErrors } from "./common.mjs";
 
 const world = () => new L.World({ gravity: [0, -10] });
 
@@ -192,4 +193,31 @@ test("null in place of an argument is an error with a code", () => {
     ]) {
         assert.throws(call, { name: "Lockstep2dError" }, String(call));
     }
+});
+
+test("options of `init` are checked", () => {
+    assert.deepEqual(initErrors.map((error) => error?.code), ["VALUE", "VALUE", "VALUE", "VALUE"]);
+    assert.match(initErrors[0].message, /`init` has no option SIMD/);
+});
+
+test("a name with a zero character is an error", () => {
+    const w = world();
+    const body = w.spawn({ name: "ball" });
+    for (const wrong of ["ab\0cd", "ab\0", "\0"]) {
+        assert.throws(() => w.spawn({ name: wrong }), { code: "VALUE", message: /name contains a zero character/ });
+        assert.throws(() => w.setName(body, wrong), { code: "NAME" });
+    }
+    assert.deepEqual([w.bodies().length, w.bodyName(body)], [1, "ball"]);
+    w.setName(body, "");
+    assert.equal(w.bodyName(body), undefined);
+});
+
+test("a long list of small items reserves no memory for large ones", () => {
+    const w = world();
+    w.spawnEach({ type: "fixed" }, Array.from({ length: 100_000 }, (_, x) => ({ position: [x % 300, Math.floor(x / 300)] })));
+    assert.equal(w.poses().length, 500_000);
+    const before = library().memory.buffer.byteLength;
+    w.spawn({ type: "fixed", shapes: [L.chain([[0, 0], [1, 0], [2, 0], [3, 0], [4, 0]])] });
+    const grown = library().memory.buffer.byteLength - before;
+    assert.ok(grown < 32 * 2 ** 20, `${grown} bytes`);
 });

@@ -130,7 +130,7 @@ pub struct PredictedEvent {
 }
 
 /// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound. It is sent more than 16 ticks after
-/// the event, because the event may occur again until then.
+/// the event, because the event may occur again until then, or when the match has ended.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
     /// Number of ticks played, including that of the event.

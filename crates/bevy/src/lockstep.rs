@@ -313,6 +313,11 @@ impl<G: LockstepGame> Lockstep<G> {
         self.peer_mut().and_then(Peer::next_event)
     }
 
+    /// Whether no further tick will be played, unless a replay goes back.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.failure.is_some() || matches!(&self.driver, Driver::Match(network) if network.has_ended())
+    }
+
     pub(crate) const fn number(&self) -> u64 {
         self.number
     }

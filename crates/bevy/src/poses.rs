@@ -1,4 +1,4 @@
-//! [`Pose`] and [`Poses`]: the poses of all bodies after one tick.
+//! [`Pose`] and [`Poses`]: the poses and velocities of all bodies after one tick.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::math::{Angle, Fx, Vec2};
@@ -26,6 +26,8 @@ struct Entry {
     body: BodyId,
     capture: u32,
     pose: Pose,
+    /// Velocity of the origin in m/s.
+    velocity: Vec2<Fx>,
 }
 
 impl Poses {
@@ -38,13 +40,23 @@ impl Poses {
                 self.entries.resize(slot + 1, None);
             }
             let pose = Pose { position: state.position(), angle: state.angle() };
-            self.entries[slot] = Some(Entry { body, capture: self.capture, pose });
+            let velocity = state.velocity_at(state.position());
+            self.entries[slot] = Some(Entry { body, capture: self.capture, pose, velocity });
         }
     }
 
+    fn entry(&self, body: BodyId) -> Option<&Entry> {
+        let entry = self.entries.get(body.index() as usize)?.as_ref();
+        entry.filter(|entry| entry.body == body && entry.capture == self.capture)
+    }
+
     pub(crate) fn get(&self, body: BodyId) -> Option<Pose> {
-        let entry = self.entries.get(body.index() as usize)?.as_ref()?;
-        (entry.body == body && entry.capture == self.capture).then_some(entry.pose)
+        self.entry(body).map(|entry| entry.pose)
+    }
+
+    /// Velocity of the body's origin in m/s.
+    pub(crate) fn velocity(&self, body: BodyId) -> Option<Vec2<Fx>> {
+        self.entry(body).map(|entry| entry.velocity)
     }
 
     /// Poses in slot order.

@@ -273,10 +273,11 @@ impl StepLog {
             .collect()
     }
 
-    /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
-    pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
+    /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks, or all if no further
+    /// tick will be played.
+    pub(crate) fn retract(&mut self, has_ended: bool) -> Vec<LoggedEvent> {
         let played = self.ticks;
-        let is_over = |withdrawn: &Withdrawn| withdrawn.event.tick + SAME_EVENT_TICKS < played;
+        let is_over = |withdrawn: &Withdrawn| has_ended || withdrawn.event.tick + SAME_EVENT_TICKS < played;
         let (over, open): (Vec<_>, _) = self.withdrawn.iter().partition(|withdrawn| is_over(withdrawn));
         self.withdrawn = open;
         over.into_iter()

@@ -1,5 +1,7 @@
 //! The systems of the plugin.
 
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
 use bevy::math::Quat;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
@@ -17,7 +19,7 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
 use crate::plugin::{LockstepSettings, LockstepStatus};
-use crate::poses::Pose;
+use crate::poses::{Pose, Poses};
 use crate::smoothing::{DrawnPose, Offset, metres};
 use crate::step_log::StepLog;
 use crate::views::{BodyView, BodyViews, View};
@@ -58,9 +60,11 @@ pub(crate) fn write_views<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     mut views: ResMut<BodyViews>,
     (settings, time): (Res<LockstepSettings>, Res<Time<Real>>),
-    all: Query<(Entity, &BodyView)>,
+    all: Query<(Entity, &BodyView), Allow<Disabled>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
+    // The game may have despawned a view, or removed its component.
+    views.retain(|view| all.get(view.entity).is_ok_and(|(_, shown)| shown.body() == view.body));
     // Entities that the game has prepared as views. Those that the plugin has spawned for a former game are not among
     // them.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
@@ -127,7 +131,8 @@ fn follow(
 ) {
     views.begin_frame();
     for (body, current) in log.after.iter() {
-        let is_way = |previous: &Pose| !is_jump(world, body, *previous, current, settings.smoothing_limit);
+        let is_way =
+            |previous: &Pose| !is_jump(world, log, body, *previous, current, settings.smoothing_limit);
         let previous = log.before.get(body).filter(is_way).unwrap_or(current);
         if views.see(body, previous, current) {
             continue;
@@ -143,9 +148,16 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was placed elsewhere: its way in a tick is longer than `limit` metres, and longer than twice the
-/// distance that its velocity covers.
-fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
+/// Whether a body was placed elsewhere: the way of its origin in a tick is longer than `limit` metres, and longer than
+/// twice the distance that the origin covers at its speed before or after the tick.
+fn is_jump(
+    world: Option<&World>,
+    log: &StepLog,
+    body: BodyId,
+    previous: Pose,
+    current: Pose,
+    limit: f32,
+) -> bool {
     if previous.position == current.position {
         return false;
     }
@@ -153,8 +165,9 @@ fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, l
     if way <= limit {
         return false;
     }
-    let Some((world, state)) = world.and_then(|world| Some((world, world.body(body)?))) else { return false };
-    way > 2.0 * metres(state.velocity()).length() / world.config().tick_rate as f32
+    let Some(world) = world else { return false };
+    let speed = |poses: &Poses| poses.velocity(body).map_or(0.0, |velocity| metres(velocity).length());
+    way > 2.0 * speed(&log.before).max(speed(&log.after)) / world.config().tick_rate as f32
 }
 
 fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> Entity {
@@ -191,7 +204,7 @@ pub(crate) fn send_events<G: LockstepGame>(
     for logged in log.announce() {
         predicted.write(PredictedEvent { tick: logged.tick, event: logged.event, views: views_of(&logged) });
     }
-    for LoggedEvent { tick, event, .. } in log.retract() {
+    for LoggedEvent { tick, event, .. } in log.retract(lockstep.has_ended()) {
         retracted.write(RetractedEvent { tick, event });
     }
     for logged in log.confirm(lockstep.confirmed()) {

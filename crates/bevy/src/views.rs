@@ -11,7 +11,7 @@ use crate::smoothing::Offset;
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
 /// If this component is added to an entity while the body has no view, that entity becomes the view when the body
-/// appears.
+/// appears. If a view is despawned or loses this component, the body has another view from the next frame on.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A rollback or a seek may
 /// replace a body by another body. The view is kept if both have the same id, kind, user data and shapes.
@@ -97,6 +97,13 @@ impl BodyViews {
 
     pub(crate) fn views_mut(&mut self) -> impl Iterator<Item = &mut View> {
         self.slots.iter_mut().flatten()
+    }
+
+    /// Drops the views for which `keep` is false, but not their entities.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&View) -> bool) {
+        for slot in &mut self.slots {
+            slot.take_if(|view| !keep(view));
+        }
     }
 
     /// Begins a frame. Views that are not [seen](BodyViews::see) in it are taken by [`BodyViews::take_unseen`].

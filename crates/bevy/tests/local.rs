@@ -4,6 +4,7 @@ mod common;
 
 use std::time::Duration;
 
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_lockstep2d::*;
 use common::arena::{self, Arena, Setup, pad_at};
@@ -157,6 +158,31 @@ fn views_leave_with_their_game() {
     assert_eq!(*app.world().resource::<LockstepStatus>(), LockstepStatus::default());
     assert_eq!(app.world_mut().query::<&BodyView>().iter(app.world()).count(), 0);
     assert_eq!(app.world().resource::<BodyViews>().iter().count(), 0);
+}
+
+#[test]
+fn a_view_that_the_game_removes_is_replaced() {
+    let mut app = app(local(), 1, TICK);
+    (0..30).for_each(|_| app.update());
+    let views: Vec<_> = app.world().resource::<BodyViews>().iter().collect();
+    let [(gone, first), (bare, second), ..] = views[..] else { panic!("{views:?}") };
+    app.world_mut().despawn(first);
+    app.world_mut().entity_mut(second).remove::<BodyView>();
+    app.update();
+    check_views(&mut app);
+    let views = app.world().resource::<BodyViews>();
+    assert!(views.entity(gone) != Some(first) && views.entity(bare) != Some(second));
+    assert!(app.world().get_entity(second).is_ok(), "it belongs to the game");
+    // A view that is given to another body.
+    let (replaced, (_, third)) = (views.entity(gone).unwrap(), views.iter().nth(2).unwrap());
+    app.world_mut().despawn(replaced);
+    app.world_mut().entity_mut(third).insert(BodyView::new(gone));
+    app.update();
+    check_views(&mut app);
+    assert_eq!(app.world().resource::<BodyViews>().entity(gone), Some(third));
+    app.world_mut().entity_mut(third).insert(Disabled);
+    app.update();
+    assert_eq!(app.world().resource::<BodyViews>().entity(gone), Some(third), "a disabled view is kept");
 }
 
 #[test]

@@ -134,6 +134,34 @@ fn a_spectator_that_was_suspended_catches_up() {
     assert!(behind < 20, "{behind} ticks");
 }
 
+#[test]
+fn every_prediction_is_confirmed_or_retracted_when_a_match_has_ended() {
+    const END: u64 = 200;
+    let mut late = 0;
+    for seed in 0..6 {
+        let network = bad_network();
+        let (setup, options) = (Setup::default(), PeerOptions { delay: (1, 1), ..PeerOptions::rollback() });
+        let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+        let contact = Network::address(1);
+        let guest = Lockstep::join(&setup, options, identity(2), network.port(2), contact).unwrap();
+        let mut players = [(host, 11 + seed), (guest, 29 + seed)].map(|(game, seed)| Player::new(game, seed));
+        let mut host = players[0].app.world_mut().resource_mut::<Lockstep<Arena>>();
+        host.peer_mut().unwrap().session_mut().unwrap().end_at(END as u32);
+        for _ in 0..600 {
+            network.set_time(network.time() + TICK);
+            players.iter_mut().for_each(Player::update);
+        }
+        for player in &players {
+            assert_eq!(player.confirmed(), END);
+            let heard = player.heard();
+            let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
+            assert_eq!(heard.predicted.len() - heard.retracted.len(), confirmed);
+            late += heard.retracted.iter().filter(|(tick, _)| tick + 16 >= END).count();
+        }
+    }
+    assert!(late > 0, "no prediction near an end was wrong");
+}
+
 /// Checks that all players have the same confirmed events, and that each predicted event is sent once.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);

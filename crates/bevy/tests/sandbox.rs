@@ -5,7 +5,7 @@ use std::time::Duration;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::*;
-use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
@@ -23,19 +23,31 @@ fn app<G: LockstepGame>(game: Lockstep<G>, frame: Duration) -> App {
     app
 }
 
-/// Heights of the view after a command, in 80 frames of a quarter of a tick each.
+fn ball() -> ShapeDef {
+    ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())
+}
+
+/// Heights of a ball's view after a command, in 80 frames of a quarter of a tick each.
 fn heights(command: impl FnOnce(&BodyView) -> Command) -> Vec<f32> {
-    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] };
-    let setup = SandboxSetup { commands: vec![spawn], ..SandboxSetup::default() };
+    heights_beside(vec![], ball(), command)
+}
+
+/// Heights of the view of a body with this shape, beside bodies of other commands.
+fn heights_beside(
+    mut commands: Vec<Command>,
+    shape: ShapeDef,
+    command: impl FnOnce(&BodyView) -> Command,
+) -> Vec<f32> {
+    commands.insert(0, Command::Spawn { body: BodyDef::dynamic(), shapes: vec![shape] });
+    let setup = SandboxSetup { commands, ..SandboxSetup::default() };
     let mut app = app(Lockstep::<Sandbox>::local(&setup).unwrap(), TICK / 4);
     (0..20).for_each(|_| app.update());
-    let mut views = app.world_mut().query::<(&BodyView, &Transform)>();
-    let command = command(views.single(app.world()).unwrap().0);
+    let view = app.world().resource::<BodyViews>().iter().next().unwrap().1;
+    let command = command(app.world().get::<BodyView>(view).unwrap());
     app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(command);
     let mut height = || {
         app.update();
-        views.single(app.world()).unwrap().1.translation.y
+        app.world().get::<Transform>(view).unwrap().translation.y
     };
     (0..80).map(|_| height()).collect()
 }
@@ -58,6 +70,34 @@ fn a_fast_body_is_drawn_on_its_way() {
     let steps = heights.windows(2).map(|pair| pair[1] - pair[0]);
     let largest = steps.fold(0.0_f32, f32::max);
     assert!((1.0..1.5).contains(&largest), "{largest}");
+}
+
+#[test]
+fn a_fast_body_that_is_stopped_is_drawn_on_its_way() {
+    // The ceiling stops the ball at 17.5 m, about 2.6 m after the end of a tick.
+    let solid = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1)).unwrap());
+    let ceiling = BodyDef::fixed().position((fx!(0), fx!(19)));
+    let ceiling = Command::Spawn { body: ceiling, shapes: vec![solid] };
+    let velocity = FixedVec2::new(fx!(0), fx!(300));
+    let set =
+        |view: &BodyView| Command::SetVelocity { body: view.body(), velocity, angular_velocity: fx!(0) };
+    let heights = heights_beside(vec![ceiling], ball(), set);
+    let largest = heights.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0_f32, f32::max);
+    assert!((1.0..1.5).contains(&largest), "{heights:?}");
+}
+
+#[test]
+fn a_body_that_spins_about_a_distant_centre_is_drawn_on_its_way() {
+    // The origin moves at 200 m/s on a circle with a radius of 10 m: 3.3 m in a tick, 0.83 m in a frame.
+    let ball = ball().offset((fx!(10), fx!(0)));
+    let heights = heights_beside(vec![], ball, |view| Command::SetVelocity {
+        body: view.body(),
+        velocity: FixedVec2::default(),
+        angular_velocity: fx!(20),
+    });
+    let ways = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let largest = ways.fold(0.0_f32, f32::max);
+    assert!((0.6..1.0).contains(&largest), "{heights:?}");
 }
 
 /// A game whose `load` forgets the score.

@@ -1,5 +1,6 @@
 //! Edits: commands, executed by a world at once or added to a list.
 
+use lockstep2d::body::Name;
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{self, Command, World};
@@ -8,9 +9,7 @@ use super::definitions::shapes_of;
 use crate::border::{In, Out, Plain};
 use crate::describe::api;
 use crate::numbers::{RawAngle, RawBody, RawFx, RawJoint, RawShape};
-use crate::records::{
-    RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawPose, RawShapeDef, body_kind, name_of,
-};
+use crate::records::{RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawPose, RawShapeDef, body_kind};
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
 
@@ -92,6 +91,7 @@ api! {
     /// unless that pointer is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
+        refused.check_if_wanted()?;
         with_two(world, commands, |world: &mut World, Commands(list)| {
             let count = list.iter().filter(|command| world.execute(command).is_err()).count();
             refused.set_if_wanted(u32::try_from(count).unwrap_or(u32::MAX))
@@ -107,6 +107,7 @@ api! {
         id: Out<'_, RawBody>,
     ) {
         let mut id = id;
+        id.check_if_wanted()?;
         let (body, shapes) = (body.get()?.def()?, shapes_of(&shapes, shape_count)?);
         match edit(target, Command::Spawn { body, shapes })? {
             Some(world::Outcome::Body(body)) => id.set_if_wanted(RawBody::of(body)),
@@ -144,6 +145,7 @@ api! {
     /// Adds a shape to a body. The shape's handle is written, unless the pointer is null or the target is a list.
     fn ls2d_add_shape(target: u32, body: RawBody, shape: In<'_, RawShapeDef>, id: Out<'_, RawShape>) {
         let mut id = id;
+        id.check_if_wanted()?;
         match edit(target, Command::AddShape { body: body.id()?, shape: shape.get()?.def()? })? {
             Some(world::Outcome::Shape(shape)) => id.set_if_wanted(RawShape::of(shape)),
             _ => Ok(()),
@@ -163,6 +165,7 @@ api! {
     /// Adds a joint. Its handle is written, unless the pointer is null or the target is a list.
     fn ls2d_add_joint(target: u32, joint: In<'_, RawJointDef>, id: Out<'_, RawJoint>) {
         let mut id = id;
+        id.check_if_wanted()?;
         match edit(target, Command::AddJoint { joint: joint.get()?.def()? })? {
             Some(world::Outcome::Joint(joint)) => id.set_if_wanted(RawJoint::of(joint)),
             _ => Ok(()),
@@ -282,7 +285,8 @@ api! {
 
     /// Sets the name of a body. A length of 0 removes it.
     fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
-        let name = name_of(text.text(length)?.as_bytes())?;
+        let text = text.text(length)?;
+        let name = if text.is_empty() { None } else { Some(Name::new(text)?) };
         edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())
     }
 

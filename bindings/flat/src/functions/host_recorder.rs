@@ -163,6 +163,7 @@ api! {
         due: Out<'_, u32>,
     ) {
         let mut due = due;
+        due.check_if_wanted()?;
         with(recorder, |recorder: &mut HostRecorder| {
             let inputs = recorder.inputs(inputs.slice(size)?, absent)?;
             let recorder = recorder.get()?;

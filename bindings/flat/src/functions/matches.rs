@@ -197,6 +197,7 @@ api! {
     /// played. Without own seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
+        issued.check_if_wanted()?;
         with(handle, |game: &mut Match| {
             let done = game.session()?.advance(now, inputs.slice(size)?)?;
             game.endpoint.flush();

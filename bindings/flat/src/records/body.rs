@@ -194,15 +194,12 @@ fn settings_flags(settings: &BodySettings) -> u32 {
         | flag(settings.may_sleep, BODY_MAY_SLEEP)
 }
 
-/// Reads a name, which ends before the first zero byte. `None` for an empty name.
-pub(crate) fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
-    let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
-    if text.is_empty() {
-        return Ok(None);
-    }
-    let text = std::str::from_utf8(text)
+/// Reads a name that is padded with zeros. `None` for an empty name.
+fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
+    let length = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    let text = std::str::from_utf8(bytes.get(..length).unwrap_or_default())
         .map_err(|_| Failure::new(Status::Name, "the name of a body is not ASCII"))?;
-    Ok(Some(Name::new(text)?))
+    if text.is_empty() { Ok(None) } else { Ok(Some(Name::new(text)?)) }
 }
 
 fn name_bytes(name: Option<Name>) -> [u8; 16] {

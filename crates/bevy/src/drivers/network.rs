@@ -4,7 +4,7 @@ use core::fmt;
 
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{Peer, PeerDesync, Transport};
-use lockstep2d::session::Address;
+use lockstep2d::session::{Address, Status};
 
 use super::FrameTime;
 use crate::error::LockstepError;
@@ -107,6 +107,14 @@ impl<G: LockstepGame> MatchDriver<G> {
 
     pub(crate) fn finish(self) -> Result<Vec<u8>, LockstepError> {
         Ok(self.peer.finish()?.replay)
+    }
+
+    /// Whether the match has ended for this peer, and all of its final ticks were played.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.peer.session().is_some_and(|session| {
+            let ended = matches!(session.status(), Status::Finished { .. } | Status::Left | Status::Closed);
+            ended && session.confirmed() == session.final_tick()
+        })
     }
 
     pub(crate) fn fraction(&self) -> f32 {
