@@ -5,8 +5,9 @@ use super::reader::ReadError;
 
 /// Bounds on the size and computing time of a replay.
 ///
-/// The default allows a day of an ordinary game, and 20 000 million work units: less than an hour of computing, or
-/// about five and a half hours for a file made to be slow. A server for one game should set lower limits.
+/// The default allows a day at 60 Hz, and 20 000 million work units: a day of 150 bodies in contact, some seven hours of
+/// 400 (`docs/VERIFYING.md`), or about five and a half hours of computing for a file made to be slow. A server for one
+/// game should set its own limits.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -49,8 +50,7 @@ impl Default for Limits {
             ticks: 24 * 60 * 60 * 60,
             // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A work unit of the sandbox takes 5 to 130 ns in ordinary games, and up to a microsecond in a file made to
-            // be slow (docs/VERIFYING.md).
+            // A work unit of the sandbox takes up to a microsecond in a file made to be slow (docs/VERIFYING.md).
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }

@@ -114,6 +114,12 @@ pub(super) fn survey<'a, G: Game>(
             found.input = input_difference::<G>(&known, limits)?;
         }
     }
+    if let [SideEvidence { claims: Some(a), ticks, .. }, SideEvidence { claims: Some(b), ticks: other, .. }] =
+        &known
+        && ticks == other
+    {
+        found.claims = differences(&fields(a)?, &fields(b)?);
+    }
     Ok((known, found))
 }
 

@@ -189,6 +189,8 @@ pub struct Comparison {
     pub setup: Vec<Difference>,
     /// The first input that differs. [`compare`](super::compare) compares states up to its tick.
     pub input: Option<InputDifference>,
+    /// Differences between the claims of two complete replays of the same length. The states may be equal.
+    pub claims: Vec<Difference>,
     /// A and B compared with the rerun.
     pub trajectories: [Trajectory; 2],
     /// Number of ticks simulated in the rerun.
@@ -221,6 +223,7 @@ impl Comparison {
             first_different: None,
             setup: Vec::new(),
             input: None,
+            claims: Vec::new(),
             trajectories: Default::default(),
             simulated: None,
             blame: Blame::Unknown,
@@ -240,6 +243,7 @@ impl Comparison {
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()
             && self.input.is_none()
+            && self.claims.is_empty()
             && self.first_different.is_none()
             && self.subjects.is_empty()
             && self.trajectories.iter().all(|trajectory| trajectory.diverges.is_none())

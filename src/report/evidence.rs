@@ -1,5 +1,6 @@
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
+use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -108,6 +109,8 @@ pub(super) struct SideEvidence<'a> {
     is_rerun: bool,
     pub(super) replay: &'a [u8],
     pub(super) ticks: u64,
+    /// The claims of a complete replay, by name.
+    pub(super) claims: Option<BTreeMap<String, i64>>,
 }
 
 impl<'a> SideEvidence<'a> {
@@ -139,7 +142,10 @@ impl<'a> SideEvidence<'a> {
                     let checkpoint = Said { hash: block.checkpoint, inputs: Some(block.inputs_digest) };
                     known.checkpoints.insert(reader.ticks(), checkpoint);
                 }
-                Part::Trailer(trailer) => drop(known.states.insert(trailer.ticks, trailer.final_hash)),
+                Part::Trailer(trailer) => {
+                    known.states.insert(trailer.ticks, trailer.final_hash);
+                    known.claims = Some(trailer.claims.into_iter().collect());
+                }
                 Part::Cut => {}
             }
         }

@@ -239,7 +239,11 @@ impl fmt::Display for CommandError {
             CommandError::NoText { path } => write!(f, "{}: too large, or not text", Shown(path)),
             CommandError::Random(error) => write!(f, "cannot make a key: {error}"),
             CommandError::KeyName { name } => {
-                write!(f, "{name:?} cannot be the name of a key: 1 to 64 bytes without control characters")
+                write!(
+                    f,
+                    "{name:?} cannot be the name of a key: 1 to 64 bytes, without control characters or spaces at \
+                     the ends"
+                )
             }
             CommandError::Require { required, names } => {
                 write!(f, "{required} signatures are required, but the keys have {names} names")

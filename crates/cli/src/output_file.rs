@@ -8,7 +8,7 @@
 //! - On Unix, only its owner can read a private file.
 //! - An input that is the temporary file of a killed process is left unchanged.
 //!
-//! A killed process leaves its temporary file, which the next writer of the target reuses.
+//! A killed process leaves its temporary file. The next writer of the target reuses it, unless it has another name.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -68,7 +68,7 @@ impl OutputFile {
     /// Creates the temporary file of a target. Call it before long computations, so that errors are reported early.
     /// Fails if the target exists and `--force` is not set, or if another process writes the target.
     ///
-    /// A target that is not a regular file, such as `/dev/stdout`, is written directly. `inputs` are never used as
+    /// The standard output and a target that is not a regular file are written directly. `inputs` are never used as
     /// temporary files.
     pub(crate) fn create(path: &Path, overwrite: Overwrite, inputs: &[&Path]) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, inputs, Readers::Default)
@@ -86,8 +86,12 @@ impl OutputFile {
         readers: Readers,
     ) -> Result<Self, CommandError> {
         let failed = CommandError::write(path);
-        check(path, overwrite)?;
         let name = path.to_path_buf();
+        if let Some(file) = standard_output(path) {
+            let target = name.clone();
+            return Ok(OutputFile { name, target, temporary: None, file, overwrite, _input: None });
+        }
+        check(path, overwrite)?;
         // A symbolic link is preserved. The file that it refers to is replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
         match fs::metadata(&target) {
@@ -100,12 +104,12 @@ impl OutputFile {
             Err(error) => return Err(failed(error)),
         }
         let mut temporary = unfinished(&target);
-        let mut file = lock(&temporary, &name, readers)?;
+        let mut file = lock(&temporary, &name, inputs, readers)?;
         let mut input = None;
         if inputs.iter().any(|input| is_at(&file, input)) {
             temporary = unfinished(&temporary);
             // The lock of the usual name is held as well, because it keeps other writers from the target.
-            input = Some(mem::replace(&mut file, lock(&temporary, &name, readers)?));
+            input = Some(mem::replace(&mut file, lock(&temporary, &name, inputs, readers)?));
         }
         let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite, _input: input };
         // Another writer may have had the lock until now, and published the target.
@@ -170,16 +174,35 @@ fn unfinished(path: &Path) -> PathBuf {
     path.into()
 }
 
-/// Refuses an existing regular file without `--force`.
+/// Refuses an existing regular file without `--force`, unless it is the standard output.
 pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandError> {
-    if !overwrite.force && fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) {
+    let exists = || fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+    if !overwrite.force && exists() && standard_output(path).is_none() {
         return Err(CommandError::Exists { path: path.to_path_buf() });
     }
     Ok(())
 }
 
+/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. Opened by its path, a regular file
+/// would be written from its start.
+#[cfg(unix)]
+fn standard_output(path: &Path) -> Option<File> {
+    use std::os::fd::AsFd;
+    use std::os::unix::fs::MetadataExt;
+    let file = File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
+    // The path is not opened for the comparison, because a pipe could block.
+    let identity = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+    let is_there = identity(fs::metadata(path).ok()?) == identity(file.metadata().ok()?);
+    is_there.then_some(file)
+}
+
+#[cfg(not(unix))]
+fn standard_output(_: &Path) -> Option<File> {
+    None
+}
+
 /// Opens and locks the temporary file. `name` is for messages.
-fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, CommandError> {
+fn lock(temporary: &Path, name: &Path, inputs: &[&Path], readers: Readers) -> Result<File, CommandError> {
     let failed = CommandError::write(name);
     for _ in 0..ATTEMPTS_MAX {
         // A link or a pipe of this name is refused. Writing to a link could change another file, and a pipe could
@@ -196,9 +219,15 @@ fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, Command
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
         // Before the lock, the previous writer may have renamed or deleted the file.
-        if is_at(&file, temporary) {
+        if !is_at(&file, temporary) {
+            continue;
+        }
+        // A writer that was killed while it published the file has left it under both names.
+        let is_input = inputs.iter().any(|input| is_at(&file, input));
+        if is_input || !is_published(&file, name).map_err(&failed)? {
             return Ok(file);
         }
+        fs::remove_file(temporary).map_err(&failed)?;
     }
     Err(CommandError::Busy { path: name.to_path_buf() })
 }
@@ -215,6 +244,18 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
         return Ok(file);
     }
     options.open(temporary)
+}
+
+/// Whether a temporary file has another name: that of its target or, on Unix, any.
+#[cfg(unix)]
+fn is_published(file: &File, _: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    Ok(file.metadata()?.nlink() > 1)
+}
+
+#[cfg(not(unix))]
+fn is_published(file: &File, target: &Path) -> io::Result<bool> {
+    Ok(is_at(file, target))
 }
 
 /// Whether `path` still names the open file.

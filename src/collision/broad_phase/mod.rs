@@ -221,6 +221,21 @@ impl BroadPhase {
         smallest.finish()
     }
 
+    /// Largest number of pairs of boxes that [`BroadPhase::pairs`] compares.
+    pub(crate) fn comparisons(&self, moved: Moved<'_>) -> u64 {
+        let (moving, fixed) = match &self.structure {
+            Structure::Trees(trees) => trees.lens(),
+            Structure::SweepAndPrune(sweep) => (sweep.boxes().len(), 0),
+            Structure::BruteForce(boxes) => (boxes.len(), 0),
+        };
+        // Below 2^21 boxes, so that no product overflows.
+        let [moving, fixed] = [moving, fixed].map(|len| len as u64);
+        match moved {
+            Moved::Slots(slots) if (slots.len() as u64) < moving / 2 => slots.len() as u64 * (moving + fixed),
+            _ => moving * (moving / 2 + fixed),
+        }
+    }
+
     /// Boxes of the trees' inner nodes with their depths. Empty for broad phases without trees.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         match &self.structure {

@@ -22,6 +22,11 @@ impl Trees {
         self.moving.len()
     }
 
+    /// Numbers of moving and of fixed boxes.
+    pub(super) fn lens(&self) -> (usize, usize) {
+        (self.moving.len(), self.fixed.len())
+    }
+
     pub(super) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         let (own, other) = match fixed {
             true => (&mut self.fixed, &mut self.moving),

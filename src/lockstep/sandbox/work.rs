@@ -100,7 +100,7 @@ impl<'a> Costs<'a> {
 
     fn everything(&self) -> u64 {
         let bodies = count(self.world.body_count()).saturating_add(self.added.bodies);
-        bodies.saturating_add(self.shapes()).saturating_add(self.removal())
+        [bodies, self.shapes(), self.removal()].into_iter().fold(self.world.scan_work(), u64::saturating_add)
     }
 
     /// Work units of visiting the shapes of a body. A body added in this tick may have all shapes added in this tick.

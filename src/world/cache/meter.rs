@@ -14,6 +14,9 @@ pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 /// Additional work units of a pair without a cached separating axis: measured on a hundred octagons in one place.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
+/// Number of pairs of boxes that are compared in one work unit.
+const COMPARED_PER_WORK: u64 = 32;
+
 /// Number of sleeping contacts that are visited in one work unit.
 const VISITED_PER_WORK: usize = 4;
 
@@ -41,6 +44,18 @@ impl WorkMeter {
     pub(crate) fn spend(&mut self, units: u64) -> bool {
         self.spent = self.spent.saturating_add(units);
         self.spent <= self.max
+    }
+
+    /// Counts a search for pairs. Returns the number of new pairs that the rest of the budget covers.
+    pub(crate) fn spend_search(&mut self, comparisons: u64) -> usize {
+        self.spend(comparisons / COMPARED_PER_WORK);
+        let pairs = self.max.saturating_sub(self.spent) / (NEW_PAIR_WORK + NARROW_PHASE_WORK);
+        usize::try_from(pairs).unwrap_or(usize::MAX)
+    }
+
+    /// Called when the rest of the budget does not suffice.
+    pub(crate) fn exhaust(&mut self) {
+        self.spent = self.spent.max(self.max.saturating_add(1));
     }
 
     /// Counts a visit of all sleeping contacts.

@@ -1,5 +1,6 @@
 use alloc::vec::Vec;
 
+use super::meter::WorkMeter;
 use super::motion::MotionCache;
 use super::pose_range::PoseRange;
 use super::poses::{Extents, Poses};
@@ -51,15 +52,25 @@ impl ShapeCache {
         self.poses.motion()
     }
 
-    /// See [`BroadPhase::pairs`].
+    /// See [`BroadPhase::pairs`]. Finds at most as many pairs as the budget of work units allows to solve.
     pub(crate) fn find_pairs(
         &mut self,
         moved: Moved<'_>,
         accept: impl Fn(Pair) -> bool,
         limit: usize,
         pairs: &mut Vec<Pair>,
+        meter: &mut WorkMeter,
     ) -> bool {
-        self.broad_phase.pairs(moved, accept, limit, pairs)
+        pairs.clear();
+        let affordable = meter.spend_search(self.broad_phase.comparisons(moved));
+        if meter.is_exhausted() {
+            return false;
+        }
+        let left_out = self.broad_phase.pairs(moved, accept, limit.min(affordable), pairs);
+        if left_out && affordable < limit {
+            meter.exhaust();
+        }
+        left_out
     }
 
     /// Starts the prediction of motion, and drops queued fat boxes. `last_moving` lists shapes that moved in the last

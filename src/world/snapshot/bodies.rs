@@ -4,9 +4,9 @@
 //! bodies, a record follows for each body with a force, an island or a target: the slot (u32), flags for the parts that
 //! follow (u8), and these parts: force and torque (3 x i64), island (2 x u32), target (2 x i64, u32).
 //!
-//! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box relative to the body's centre in
-//! units of 2^-22 m (4 x i32). A box off this grid or too far away has `i32::MIN` as its first coordinate, and follows
-//! in full (4 x i64) after all others.
+//! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box in units of 2^-22 m (4 x i32),
+//! relative to the body's centre, rounded down to this grid. A box off the grid or too far away has `i32::MIN` as its
+//! first coordinate, and follows in full (4 x i64) after all others.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;

@@ -55,7 +55,7 @@ fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
 /// Finds pairs that may be new. Returns whether pairs were left out at the limit.
 fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     let limit = state.config.pair_limit as usize;
-    let Scratch { shapes, pairs: cache, .. } = scratch;
+    let Scratch { shapes, pairs: cache, meter, .. } = scratch;
     let (changes, non_colliding) = (&cache.changes, &cache.non_colliding);
     let (pairs, fresh) = (&mut cache.buffers.pairs, &mut cache.buffers.fresh);
     let everything = changes.all() || state.pairs_left_out;
@@ -67,7 +67,7 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
         let (a, b) = state.bodies_of(pair);
         (a.is_active() || b.is_active()) && non_colliding.may_touch(state, pair)
     };
-    let left_out = shapes.find_pairs(moved, accept, limit, pairs);
+    let left_out = shapes.find_pairs(moved, accept, limit, pairs, meter);
     let activated = fresh.len();
     for &pair in pairs.iter() {
         if fresh[..activated].binary_search_by_key(&pair, |contact| contact.shapes).is_err() {

@@ -53,7 +53,7 @@ fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pa
 /// Finds the pairs of a sleeping body and a body woken since change `first_change`: two solid shapes, or an area and a
 /// shape on which it acts.
 fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
-    let Scratch { shapes, pairs: cache, .. } = scratch;
+    let Scratch { shapes, pairs: cache, meter, .. } = scratch;
     let woken = Moved::Slots(&cache.changes.shapes()[first_change..]);
     let accept = |pair: Pair| {
         let (a, b) = state.bodies_of(pair);
@@ -61,5 +61,5 @@ fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize
             && (state.sensor_of(pair).is_none() || state.has_area(pair))
             && cache.non_colliding.may_touch(state, pair)
     };
-    shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs);
+    shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs, meter);
 }

@@ -3,9 +3,13 @@
 use crate::solver::SolverSettings;
 use crate::world::World;
 use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work};
+use crate::world::state::State;
 
 /// Work units of a tick of an empty world, which takes some microseconds.
 const TICK_WORK: u64 = 8;
+
+/// Number of slots that are visited in one work unit.
+const SCANNED_PER_WORK: usize = 16;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AddedWork {
@@ -19,10 +23,10 @@ impl World {
     /// `bodies` and `shapes` are the largest numbers of bodies and shapes added before it.
     /// [`Game::work`](crate::lockstep::Game::work) can be based on the result.
     ///
-    /// The bound is the number of bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4
-    /// for each pair and 8 for the tick. Each pair beyond 32 per body counts as 65 when it is solved. The bound
-    /// includes finding as many new pairs as the world allows. Solving new pairs and the pairs of bodies that wake is
-    /// counted within the tick.
+    /// The bound is the number of bodies, pairs and joints, times the solver's sub-steps and iterations, plus 4 for
+    /// each pair, 1 for each shape, 1/16 for each slot of a handle, and 8 for the tick. Each pair beyond 32 per body
+    /// counts as 65 when it is solved. Finding pairs, and solving new pairs and the pairs of bodies that wake, is
+    /// counted within the tick, if [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -46,17 +50,21 @@ impl World {
         let joints = count(self.joint_count()).saturating_add(joints);
         let pairs = count(self.pair_count());
         let constraints = joints.saturating_add(pair_work(pairs, bodies));
-        let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
-        let compared = shapes.saturating_mul(shapes);
-        let possible_pairs = (compared / 2).min(self.config().pair_limit.into());
-        let found = possible_pairs.saturating_add(compared / 64);
+        let solved = bodies.saturating_add(constraints).saturating_mul(rounds);
         let narrow_phase = pairs.saturating_mul(NARROW_PHASE_WORK);
-        [solved, found, narrow_phase].into_iter().fold(TICK_WORK, u64::saturating_add)
+        [solved, shapes, narrow_phase, self.scan_work()].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, new and
-    /// woken pairs, joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may be skipped, so
-    /// that the state may be wrong from then on.
+    /// Work units of visiting all slots, which stay when bodies, shapes, joints and islands are removed.
+    pub(crate) fn scan_work(&self) -> u64 {
+        let State { bodies, shapes, joints, islands, .. } = &*self.state;
+        let slots = [bodies.slot_count(), shapes.slot_count(), joints.slot_count(), islands.slot_count()];
+        u64::try_from(slots.iter().sum::<usize>() / SCANNED_PER_WORK).unwrap_or(u64::MAX)
+    }
+
+    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, the search for
+    /// pairs, new and woken pairs, joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may
+    /// be skipped, so that the state may be wrong from then on.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }

@@ -122,7 +122,8 @@ fn export_world(
     arguments: &Arguments,
     console: &mut Console<'_>,
 ) -> CommandResult {
-    if arguments.tick.is_some_and(|tick| tick != world.tick()) {
+    let mut ticks = [arguments.tick, arguments.from, arguments.to].into_iter().flatten();
+    if arguments.every.is_some() || ticks.any(|tick| tick != world.tick()) {
         return Err(CommandError::NothingThere { what: "other tick in this snapshot".into() });
     }
     match format {

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// this run reaches new keyframes
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
-    /// Number of ticks between keyframes
+    /// Number of ticks between keyframes; a file of keyframes that exists keeps its own
     #[arg(long, value_name = "TICKS", default_value_t = TimelineOptions::default().interval,
           value_parser = value_parser!(u32).range(1..))]
     interval: u32,
@@ -57,11 +57,15 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let bytes = context.load(&arguments.file)?;
-    let options = TimelineOptions { interval: arguments.interval, ..TimelineOptions::default() };
+    let keyframes = arguments.keyframes.as_deref().map(read_keyframes).transpose()?.flatten();
+    // With an interval of 1, a timeline takes over the interval of the keyframes.
+    let interval = if keyframes.is_some() { 1 } else { arguments.interval };
+    let options = TimelineOptions { interval, ..TimelineOptions::default() };
     let mut timeline = Timeline::<G>::open(&bytes, &options, context.limits())
         .map_err(CommandError::replay(&arguments.file))?;
-    if let Some(path) = &arguments.keyframes {
-        use_keyframes(&mut timeline, path)?;
+    if let Some((path, keyframes)) = keyframes {
+        let failed = |error| CommandError::Keyframes { path: path.to_path_buf(), error };
+        timeline.use_keyframes(&keyframes).map_err(failed)?;
     }
     let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite, &[&arguments.file]);
     let output = arguments.output.as_ref().map(create).transpose()?;
@@ -119,17 +123,14 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
     Ok((there, timeline.simulated() - there))
 }
 
-/// Loads the keyframes of a file, if it exists.
-fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result<(), CommandError> {
+/// Reads a file of keyframes, if it exists.
+fn read_keyframes(path: &Path) -> Result<Option<(&Path, Vec<u8>)>, CommandError> {
     // Besides the keyframes, 1 MiB is enough for the headers of the file and of each keyframe.
-    let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(CommandError::read(path)(error)),
-    };
-    timeline
-        .use_keyframes(&bytes)
-        .map_err(|error| CommandError::Keyframes { path: path.to_path_buf(), error })
+    match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
+        Ok(bytes) => Ok(Some((path, bytes))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(CommandError::read(path)(error)),
+    }
 }
 
 #[derive(Serialize)]

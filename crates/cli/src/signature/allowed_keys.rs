@@ -97,5 +97,6 @@ impl FromStr for AllowedKeys {
 }
 
 pub(crate) fn is_name(name: &str) -> bool {
-    !name.is_empty() && name.len() <= NAME_BYTES_MAX && !name.chars().any(char::is_control)
+    let is_possible = !name.is_empty() && name.trim() == name && name.len() <= NAME_BYTES_MAX;
+    is_possible && !name.chars().any(char::is_control)
 }

@@ -1,5 +1,6 @@
 //! `diff`: the first difference, the side that diverged, and the exit code.
 
+use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, History, Sandbox};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Desync, DesyncReport};
@@ -86,6 +87,37 @@ fn other_inputs_are_named() {
     assert_eq!((&found["input"]["tick"], &found["input"]["seat"]), (&json!(12), &json!(1)));
     assert_eq!(found["input"]["fields"][0]["name"], "wink");
     assert_eq!((exit, &found["first_different"]), (Exit::NoMatch, &Value::Null));
+}
+
+/// The file with 999 as the value of the last claim, and with the checksum repaired as `docs/FORMAT.md` specifies.
+fn with_forged_claim(file: &[u8]) -> Vec<u8> {
+    let (blocks, trailer) = file.split_at(file.len() - 79);
+    let mut trailer = trailer[..71].to_vec();
+    trailer[63..].copy_from_slice(&999i64.to_le_bytes());
+    let chain = [&trailer[5 + 24..5 + 40], &StateHash::of_bytes(&trailer).0.to_le_bytes()].concat();
+    let checksum = StateHash::of_bytes(&chain).0.to_le_bytes();
+    [blocks, &trailer, &checksum[..8]].concat()
+}
+
+#[test]
+fn other_claims_are_a_difference() {
+    let folder = Folder::new("diff-claims");
+    let honest = replay(35);
+    let (a, b) = (folder.write("a", &honest), folder.write("b", &with_forged_claim(&honest)));
+    let verdict = run(&["verify", "--json", &b]).out;
+    assert!(verdict.contains(r#""verdict":"claim_mismatch""#), "{verdict}");
+    for command in ["diff", "bisect"] {
+        let outcome = run(&[command, &a, &b]);
+        assert_eq!(outcome.exit, Exit::NoMatch, "{command}: {}", outcome.out);
+        let lines = "different, equal states up to tick 35\n\
+                     played again up to tick 35: both kept to the rules, so `verify` tells which claims are true\n\
+                     other claims\n    sum: 40 | 999\n";
+        assert!(outcome.out.ends_with(lines), "{command}: {}", outcome.out);
+        let found: Value = serde_json::from_str(&run(&[command, "--json", &a, &b]).out).unwrap();
+        assert_eq!((&found["equal"], &found["claims"][0]["b"]["text"]), (&json!(false), &json!("999")));
+        let same: Value = serde_json::from_str(&run(&[command, "--json", &b, &b]).out).unwrap();
+        assert_eq!((&same["equal"], &same["claims"]), (&json!(true), &json!([])), "{command}");
+    }
 }
 
 #[test]

@@ -94,6 +94,9 @@ fn a_snapshot_has_a_picture_and_a_state() {
         (vec!["export", &file, "--plot"], "has one state, which is too few for --plot"),
         (vec!["export", &file, "-o", &gif], "has one state, which is too few for --gif"),
         (vec!["export", &file, "--svg", "--tick", "51"], "there is no other tick"),
+        (vec!["export", &file, "--json", "--from", "9", "--to", "50"], "there is no other tick"),
+        (vec!["export", &file, "--json", "--to", "51"], "there is no other tick"),
+        (vec!["export", &file, "--json", "--every", "2"], "there is no other tick"),
     ] {
         let outcome = run_sandbox(&arguments);
         assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""));

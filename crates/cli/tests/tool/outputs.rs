@@ -156,6 +156,45 @@ fn a_file_on_the_standard_output_is_nothing_but_the_file() {
     assert!(done.stdout.starts_with(b"/dev/null: "), "{}", message(&done));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_redirected_standard_output_is_written_where_it_stands() {
+    let folder = Folder::new("outputs-redirected");
+    let to = folder.path("out");
+    for redirection in ["/dev/stdout", "/dev/fd/1"] {
+        for (to_file, to_stdout) in writers(&to).into_iter().zip(writers(redirection)) {
+            assert_eq!(tool(&to_file).status.code(), Some(0), "{to_file:?}");
+            let expected = [OLD, &fs::read(&to).unwrap()].concat();
+            let log = folder.write("log", OLD);
+            let script = "log=$1; shift; exec \"$@\" >> \"$log\"";
+            let done = Command::new("sh").args(["-c", script, "sh", &log, TOOL]).args(&to_stdout).output();
+            let done = done.unwrap();
+            assert_eq!(done.status.code(), Some(0), "{to_stdout:?}: {}", message(&done));
+            assert!(fs::read(&log).unwrap() == expected, "{to_stdout:?}");
+            fs::remove_file(&to).unwrap();
+        }
+    }
+    assert_eq!(names(&folder), ["log"]);
+}
+
+/// A process that is killed between the two leaves the file under both names.
+#[test]
+fn a_published_file_is_no_temporary_file() {
+    let folder = Folder::new("outputs-published");
+    let whole = fs::read(golden("box_stack")).unwrap();
+    let (to, damaged) = (folder.write("x.replay", &whole), folder.write("damaged.replay", b"no replay"));
+    let link = || fs::hard_link(&to, format!("{to}.unfinished")).unwrap();
+    let trim = |from: &str| tool(&["trim", from, "--ticks", "60", "-o", &to, "--force"].map(String::from));
+    link();
+    assert_eq!(trim(&damaged).status.code(), Some(1));
+    assert!(fs::read(&to).unwrap() == whole, "an existing file changed without success");
+    assert_eq!(names(&folder), ["damaged.replay", "x.replay"]);
+    link();
+    assert_eq!(trim(&golden("box_stack")).status.code(), Some(0));
+    assert!(fs::read(&to).unwrap().len() < whole.len());
+    assert_eq!(names(&folder), ["damaged.replay", "x.replay"]);
+}
+
 /// Starts a long recording, and waits until its temporary file has at least 4000 bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];

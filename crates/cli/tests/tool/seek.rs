@@ -84,6 +84,24 @@ fn keyframes_are_written_once_and_used_and_added_to() {
 }
 
 #[test]
+fn another_interval_loses_no_keyframes_of_the_file() {
+    let folder = Folder::new("seek-interval");
+    let (file, keyframes) = (folder.write("a.replay", &replay(950)), folder.path("a.keyframes"));
+    let seek = |tick: &str, interval: &[&str]| {
+        let outcome =
+            run(&[&["seek", &file, "--tick", tick, "--keyframes", &keyframes, "--json"], interval].concat());
+        let found: Value = serde_json::from_str(&outcome.out).unwrap();
+        found["simulated"].as_u64().unwrap()
+    };
+    seek("420", &["--interval", "100"]);
+    // The default is 300 ticks.
+    for interval in [&[] as &[&str], &["--interval", "50"], &["--interval", "700"]] {
+        seek("950", interval);
+        assert_eq!(seek("410", interval), 10, "{interval:?}");
+    }
+}
+
+#[test]
 fn wrong_keyframes_are_refused_and_left_alone() {
     let folder = Folder::new("seek-refused");
     let (file, other) = (folder.write("a.replay", &replay(95)), folder.write("b.replay", &replay(96)));

@@ -218,9 +218,12 @@ fn a_secret_key_is_private_and_never_replaced_by_accident() {
         assert_eq!(line, json!({ "file": path, "key": secret.public_key().to_string(), "name": "alice" }));
         assert!(!format!("{secret:?}").contains(fs::read_to_string(&path).unwrap()[24..].trim_end()));
     }
-    let named = run(&["keygen", "--name", "a\nb", "-o", &folder.path("other")]);
-    assert_eq!(named.exit, Exit::Trouble);
-    assert!(!fs::exists(folder.path("other")).unwrap());
+    // The name has to be the same when the line is read.
+    for name in ["a\nb", " ", "alice ", "\u{a0}alice", ""] {
+        let named = run(&["keygen", "--name", name, "-o", &folder.path("other")]);
+        assert_eq!(named.exit, Exit::Trouble, "{name:?}");
+        assert!(!fs::exists(folder.path("other")).unwrap(), "{name:?}");
+    }
 }
 
 #[cfg(unix)]

@@ -30,6 +30,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> Json {
         "groups": groups,
         "setup": fields(&found.setup),
         "input": input,
+        "claims": fields(&found.claims),
         "explanation": explanation,
         "stage": found.stage.map(|stage| stage.name()),
         "tick": found.tick,

@@ -69,7 +69,10 @@ impl Text<'_> {
         match (found.simulated, found.blame) {
             (None, _) | (_, Blame::Unknown) => {}
             (Some(until), Blame::Nobody) => {
-                write!(f, "\nplayed again up to tick {until}: both kept to the rules")?
+                write!(f, "\nplayed again up to tick {until}: both kept to the rules")?;
+                if !found.claims.is_empty() {
+                    write!(f, ", so `verify` tells which claims are true")?;
+                }
             }
             (Some(until), Blame::Side(side)) => {
                 let trajectory = &found.trajectories[side.index()];
@@ -95,13 +98,20 @@ impl Text<'_> {
         };
         let (tick, bit, path) = (explanation.tick, explanation.bit, OneLine(&explanation.path));
         write!(f, "\nexplained by bit {bit} of a number of {path}, flipped after tick {tick}:")?;
-        explanation.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
+        explanation
+            .differences
+            .iter()
+            .try_for_each(|difference| write!(f, "\n    {}", Line(difference.field().name(), difference)))
     }
 
     fn inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.found.setup.is_empty() {
             write!(f, "\nsetup")?;
             self.lines(&self.found.setup, f)?;
+        }
+        if !self.found.claims.is_empty() {
+            write!(f, "\n{BAD}other claims{BAD:#}")?;
+            self.lines(&self.found.claims, f)?;
         }
         let Some(input) = &self.found.input else {
             return Ok(());
@@ -113,7 +123,8 @@ impl Text<'_> {
     /// Prints at most `subjects` fields, and the number of the fields that are left out.
     fn lines(&self, differences: &[Difference], f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = differences.iter().take(self.subjects);
-        shown.try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+        shown
+            .try_for_each(|difference| write!(f, "\n    {}", Line(difference.field().path(), difference)))?;
         let count = differences.len();
         match count.saturating_sub(self.subjects) {
             0 => Ok(()),
@@ -151,7 +162,9 @@ impl Text<'_> {
         write!(f, "{count} {differ} in {}", OneLine(&sections.join(", ")))?;
         for Subject { path, differences, .. } in subjects.iter().take(self.subjects) {
             write!(f, "\n  {}", OneLine(path))?;
-            differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+            differences.iter().try_for_each(|difference| {
+                write!(f, "\n    {}", Line(difference.field().name(), difference))
+            })?;
         }
         match count.saturating_sub(self.subjects) {
             0 => Ok(()),
@@ -160,19 +173,17 @@ impl Text<'_> {
     }
 }
 
-struct Line<'a>(&'a Difference);
+/// Name and values of a field.
+struct Line<'a>(&'a str, &'a Difference);
 
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Line(difference) = self;
+        let Line(name, difference) = self;
         let value = |value: &Option<_>| match value {
             Some(value) => format!("{value}"),
             None => "nothing".into(),
         };
-        let name = match difference.field().name() {
-            "" => "value",
-            name => name,
-        };
+        let name = if name.is_empty() { "value" } else { name };
         // The texts may come from an untrusted file, so they are escaped.
         let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
         write!(f, "{}", OneLine(&text))

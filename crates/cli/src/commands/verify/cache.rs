@@ -15,7 +15,7 @@ use crate::console::json_text;
 
 /// Version of the cache. It is incremented when the meaning of an entry changes, or when the verdict for the same
 /// bytes, rules and semantics changes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Maximum size of an entry in bytes. An entry with 256 claims is smaller.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
