@@ -347,34 +347,44 @@ impl Body {
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
         let dv = Vec2::new(divide(impulse.x, self.mass.mass), divide(impulse.y, self.mass.mass));
         self.velocity = (self.velocity() + dv).shortened(SPEED_MAX.into()).narrow();
-        self.apply_angular_impulse((point - self.centre).cross(impulse));
+        let arm = point - self.centre;
+        let product = |a: Fx, b: Fx| i128::from(a.to_bits()) * i128::from(b.to_bits());
+        self.turn_by(product(arm.x, impulse.y).saturating_sub(product(arm.y, impulse.x)));
     }
 
     /// Applies an angular impulse in N m s.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
-        if self.turns() {
-            let du = narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration));
-            self.spin = self.spin.saturating_add(du);
+        self.turn_by(i128::from(impulse.to_bits()) << 32);
+    }
+
+    /// Applies an angular impulse in N m s, with 64 fraction bits, and clamps the velocity.
+    fn turn_by(&mut self, impulse: i128) {
+        if self.turns() && self.has_mass() {
+            let over = i128::from(self.mass.mass.to_bits()) * i128::from(self.mass.gyration.to_bits());
+            // If the impulse has no room for 21 more bits, the divisor has bits to spare, or the quotient is too large.
+            let room = impulse.unsigned_abs().leading_zeros().saturating_sub(1).min(21);
+            let du = saturate_wide(div_round(impulse << room, over >> (21 - room)));
+            self.spin = self.spin.saturating_add(Speed::from_bits(saturate(du)));
         }
         self.clamp_velocity();
     }
 
     /// Changes of `v` and `u` by the applied force and torque in one of `rate` sub-steps per second: `dv = F / (m
-    /// rate)`, `du = torque / (m k rate)`.
-    pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
+    /// rate)`, `du = torque / (m k rate)`. `dv` is in units of [`Speed`], beyond its range if need be.
+    pub(crate) fn acceleration_step(&self, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force, self.torque, rate)
     }
 
     /// [`Self::acceleration_step`] with an additional force in N and an additional torque in N m.
-    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
+    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force + force, self.torque.saturating_add(torque), rate)
     }
 
-    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
-        let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
+    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> ([i64; 2], Speed) {
         let is_turned = torque != Fx::ZERO && self.turns();
-        let du = if is_turned { divide(torque, self.mass.gyration) } else { Fx::ZERO };
-        (Vec2::new(dv(force.x), dv(force.y)), over_mass(du, self.mass.mass, rate))
+        let around = if is_turned { divide(torque, self.mass.gyration) } else { Fx::ZERO };
+        let [x, y, du] = [force.x, force.y, around].map(|force| over_mass(force, self.mass.mass, rate));
+        ([x, y], Speed::from_bits(saturate(du)))
     }
 }
 
@@ -383,11 +393,11 @@ fn divide(a: Fx, b: Fx) -> Fx {
     crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
 }
 
-/// `force / (mass rate)` as a speed, rounded to nearest and saturated. 0 if the mass is 0.
-fn over_mass(force: Fx, mass: Fx, rate: u32) -> Speed {
+/// `force / (mass rate)` in units of [`Speed`], rounded to nearest. 0 if the mass is 0.
+fn over_mass(force: Fx, mass: Fx, rate: u32) -> i64 {
     if force == Fx::ZERO || mass == Fx::ZERO {
-        return Speed::ZERO;
+        return 0;
     }
     let bits = div_round(i128::from(force.to_bits()) << 21, i128::from(mass.to_bits()) * i128::from(rate));
-    Speed::from_bits(saturate(saturate_wide(bits)))
+    saturate_wide(bits)
 }

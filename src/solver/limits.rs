@@ -2,21 +2,32 @@
 //! format. Impulses of joints in blocks (`joint/block`) are not clamped within a tick: their velocity changes saturate.
 
 pub(crate) use crate::body::SPEED_MAX;
-use crate::math::Speed;
+use crate::math::{Fx, Speed, Vec2, round_shift, saturate, saturate_wide};
 
 /// Number of results that a clamp has changed. The state of the world contains the sum over all ticks.
 pub(crate) type Faults = u64;
 
 /// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. A larger impulse of
-/// a point block is clamped.
+/// a point block is shortened, or clamped in a hinge.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// Clamps an impulse of a point block to [`STEP_MAX`] before it is applied.
+/// A velocity in units of [`Speed`], beyond its range if need be.
 #[inline]
-pub(crate) fn clamp_lambda(lambda: &mut Speed, faults: &mut Faults) {
-    let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);
-    *faults += u64::from(within != *lambda);
-    *lambda = within;
+pub(crate) fn units(velocity: Fx) -> i64 {
+    round_shift(velocity.to_bits(), Fx::FRAC_NBITS - Speed::FRAC_NBITS)
+}
+
+/// Shortens a vector in units of [`Speed`] so that both components are within `most`, which is a fault.
+#[inline]
+pub(crate) fn shortened(vector: [i64; 2], most: Speed, faults: &mut Faults) -> Vec2<Speed> {
+    let largest = vector[0].unsigned_abs().max(vector[1].unsigned_abs());
+    let is_longer = largest > u64::from(most.unsigned_abs().to_bits());
+    *faults += u64::from(is_longer);
+    let [x, y] = vector.map(|part| {
+        let shorter = || saturate_wide(i128::from(part) * i128::from(most.to_bits()) / i128::from(largest));
+        Speed::from_bits(saturate(if is_longer { shorter() } else { part }))
+    });
+    Vec2::new(x, y)
 }

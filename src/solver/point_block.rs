@@ -10,8 +10,9 @@
 //!
 //! p   = G L
 //! vr  = vB - vA + eB uB - eA uA
-//! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512) - push
-//! L'  = clamp(L + d, -1023, 1023),  d = L' - L
+//! d   = -massScale (vr + bias) - impulseScale p - push
+//! L'  = L + d, shortened so that |G L'| <= the largest impulse and components are at most 1023
+//! d   = L' - L, shortened so that components are at most 512
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
@@ -51,10 +52,12 @@ use super::body::SolverBody;
 #[cfg(test)]
 use super::body_pair::Remainders;
 use super::body_pair::{BodyPair, Change};
-use super::limits::{Faults, IMPULSE_MAX, clamp_lambda};
+use super::limits::{Faults, IMPULSE_MAX, STEP_MAX, shortened};
 use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
-use crate::math::{Ratio, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
+use crate::math::{
+    Ratio, Speed, Unit, Vec2, div_round, mul, round_shift, round_shift_wide, saturate, saturate_wide,
+};
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Symmetric<T> {
@@ -64,11 +67,12 @@ struct Symmetric<T> {
 }
 
 impl Symmetric<Unit> {
-    fn apply(&self, v: Vec2<Speed>) -> Vec2<Speed> {
-        Vec2::new(
-            crate::math::mul_add(self.m11, v.x, self.m12, v.y),
-            crate::math::mul_add(self.m12, v.x, self.m22, v.y),
-        )
+    fn apply(&self, [x, y]: [i64; 2]) -> [i64; 2] {
+        let dot = |a: Unit, b: Unit| {
+            let times = |gain: Unit, part: i64| i128::from(gain.to_bits()) * i128::from(part);
+            saturate_wide(round_shift_wide(times(a, x) + times(b, y), 30))
+        };
+        [dot(self.m11, self.m12), dot(self.m12, self.m22)]
     }
 
     /// `f`, with 30 fraction bits.
@@ -90,8 +94,8 @@ impl Symmetric<Unit> {
 pub(crate) struct PointGoal {
     /// The negated target velocity.
     pub(crate) bias: Vec2<Speed>,
-    /// Impulse that the softness does not scale: [`Softness::push`].
-    pub(crate) push: Vec2<Speed>,
+    /// Impulse that the softness does not scale, in units of [`Speed`]: [`Softness::push_along`].
+    pub(crate) push: [i64; 2],
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -156,11 +160,11 @@ impl PointBlock {
         bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: turn(self.f_b) });
     }
 
-    /// `p = G L`.
-    fn impulse(&self, lambda: Vec2<Speed>) -> Vec2<Speed> {
+    /// `p = G L`, in units of [`Speed`].
+    fn impulse(&self, lambda: [i64; 2]) -> [i64; 2] {
         // `G` is `GA + GB`.
-        let (a, b) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
-        Vec2::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
+        let ([a_x, a_y], [b_x, b_y]) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
+        [a_x.saturating_add(b_x), a_y.saturating_add(b_y)]
     }
 
     pub(crate) fn ratios(&self) -> (Vec2<Ratio>, Vec2<Ratio>) {
@@ -199,18 +203,17 @@ impl PointBlock {
         p_max: Speed,
         lambda: &mut Vec2<Speed>,
     ) {
-        let d = self.wanted(bodies.a, bodies.b, goal, softness, *lambda, bodies.faults);
+        let [d_x, d_y] = self.wanted(bodies.a, bodies.b, goal, softness, *lambda, bodies.faults);
         let faults = &mut *bodies.faults;
-        let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
-        let next = self.shortened(next, p_max);
-        let mut d = next - *lambda;
-        clamp_lambda(&mut d.x, faults);
-        clamp_lambda(&mut d.y, faults);
+        let [x, y] = units_of(*lambda);
+        let next = self.within([x.saturating_add(d_x), y.saturating_add(d_y)], p_max);
+        let [next_x, next_y] = units_of(shortened(next, IMPULSE_MAX, faults));
+        let d = shortened([next_x - x, next_y - y], STEP_MAX, faults);
         *lambda += d;
         self.apply(d, bodies);
     }
 
-    /// The change of `L` in one iteration, before limits.
+    /// The change of `L` in one iteration, before limits, in units of [`Speed`].
     #[inline]
     pub(crate) fn wanted(
         &self,
@@ -220,31 +223,25 @@ impl PointBlock {
         softness: &Softness,
         lambda: Vec2<Speed>,
         faults: &mut Faults,
-    ) -> Vec2<Speed> {
+    ) -> [i64; 2] {
         let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
-        let p = self.impulse(lambda);
-        Vec2::new(
-            softness.impulse(vr.x, bias.x, p.x, faults).saturating_sub(push.x),
-            softness.impulse(vr.y, bias.y, p.y, faults).saturating_sub(push.y),
-        )
+        let [p_x, p_y] = self.impulse(units_of(lambda)).map(|part| Speed::from_bits(saturate(part)));
+        [softness.wanted(vr.x, bias.x, p_x) - push[0], softness.wanted(vr.y, bias.y, p_y) - push[1]]
     }
 
-    /// Shortens `L` so that `|G L| <= p_max`.
-    fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
-        let p = self.impulse(lambda);
-        let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
-        let length = (square(p.x) + square(p.y)).isqrt();
-        let most = u64::from(p_max.unsigned_abs().to_bits());
-        if length <= most {
+    /// Shortens `L` so that `|G L| <= p_max`. [`Speed::MAX`] is unlimited.
+    fn within(&self, lambda: [i64; 2], p_max: Speed) -> [i64; 2] {
+        if p_max == Speed::MAX {
             return lambda;
         }
-        let part = |speed: Speed| {
-            let bits =
-                crate::math::div_round(i128::from(speed.to_bits()) * i128::from(most), i128::from(length));
-            Speed::from_bits(saturate(saturate_wide(bits)))
-        };
-        Vec2::new(part(lambda.x), part(lambda.y))
+        let [x, y] = self.impulse(lambda).map(|part| i128::from(part).pow(2));
+        let most = i128::from(p_max.to_bits());
+        if x + y < (most + 1).pow(2) {
+            return lambda;
+        }
+        let length = (x + y).isqrt();
+        lambda.map(|part| saturate_wide(div_round(i128::from(part) * most, length)))
     }
 
     /// `vr`, measured with the given lever ratios.
@@ -281,7 +278,12 @@ fn product_of_fractions(fractions: MassFractions) -> i128 {
     i128::from(mul::<_, _, U30>(fractions.a, fractions.b).to_bits())
 }
 
+fn units_of(lambda: Vec2<Speed>) -> [i64; 2] {
+    [lambda.x, lambda.y].map(|part| part.to_bits().into())
+}
+
 /// `clamp(L + d, -1023, 1023)`.
+#[cfg(test)]
 fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
     let limit = i64::from(IMPULSE_MAX.to_bits());
     let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());

@@ -8,7 +8,7 @@
 //! e = c / k                                            lever ratio
 //! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that no impulse moves
 //! D  = aA (1 + eA^2) + aB (1 + eB^2)                   1 or more
-//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2
+//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2 (in coupled rows 4.1 and 1.1)
 //!
 //! vn = n.(vB - vA) + eB uB - eA uA
 //! d  = -massScale (vn + bias) - impulseScale L
@@ -33,8 +33,8 @@ use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Fx, Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
-    saturate, saturate_wide,
+    Fx, Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate,
+    saturate_wide,
 };
 
 /// The share of each body in a change of the relative velocity.
@@ -102,8 +102,9 @@ pub(crate) struct Row {
     n_b: Vec2<Unit>,
     e_a: Ratio,
     e_b: Ratio,
-    g_a: Unit,
-    g_b: Unit,
+    /// With 30 fraction bits.
+    g_a: i64,
+    g_b: i64,
     f_a: Unit,
     f_b: Unit,
 }
@@ -124,12 +125,17 @@ impl Row {
         let (e_a, e_b) = (ratio(a), ratio(b));
         let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
         let denominator = moving + turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
-        let gain = |fraction: Unit| {
-            let denominator = denominator.max(1);
-            Unit::from_bits(saturate(((i64::from(fraction.to_bits()) << 30) + denominator / 2) / denominator))
-        };
+        (Row::with_gains([n, n], [e_a, e_b], fractions, denominator), denominator)
+    }
+
+    fn with_gains(n: [Vec2<Unit>; 2], e: [Ratio; 2], fractions: MassFractions, denominator: i64) -> Row {
+        let denominator = denominator.max(1);
+        let gain = |fraction: Unit| ((i64::from(fraction.to_bits()) << 30) + denominator / 2) / denominator;
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
-        (Row { n, n_b: n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
+        let turning =
+            |g: i64, e: Ratio| Unit::from_bits(saturate(round_shift(g * i64::from(e.to_bits()), 24)));
+        let (f_a, f_b) = (turning(g_a, e[0]), turning(g_b, e[1]));
+        Row { n: n[0], n_b: n[1], e_a: e[0], e_b: e[1], g_a, g_b, f_a, f_b }
     }
 
     /// A row whose impulses change nothing.
@@ -138,8 +144,8 @@ impl Row {
         n_b: Vec2::new(Unit::ZERO, Unit::ZERO),
         e_a: Ratio::ZERO,
         e_b: Ratio::ZERO,
-        g_a: Unit::ZERO,
-        g_b: Unit::ZERO,
+        g_a: 0,
+        g_b: 0,
         f_a: Unit::ZERO,
         f_b: Unit::ZERO,
     };
@@ -182,7 +188,7 @@ impl Row {
     /// Changes the velocities by an impulse `d` of at most [`STEP_MAX`].
     #[inline]
     fn apply_step(&self, d: Speed, bodies: &mut BodyPair<'_>) {
-        let times = |gain: Unit| i64::from(gain.to_bits()) * i64::from(d.to_bits());
+        let times = |gain: i64| gain * i64::from(d.to_bits());
         let along = |n: Unit, change: i64| {
             saturate_wide(round_shift_wide(i128::from(n.to_bits()) * i128::from(change), 30))
         };
@@ -192,8 +198,8 @@ impl Row {
             spin,
         };
         bodies.change(
-            change(self.n, -times(self.g_a), -times(self.f_a)),
-            change(self.n_b, times(self.g_b), times(self.f_b)),
+            change(self.n, -times(self.g_a), -times(self.f_a.to_bits().into())),
+            change(self.n_b, times(self.g_b), times(self.f_b.to_bits().into())),
         );
     }
 
@@ -279,7 +285,7 @@ mod tests {
     use super::super::limits::SPEED_MAX;
     use super::*;
     use crate::fx;
-    use crate::math::{Fx, Rng, Rot, narrow};
+    use crate::math::{Fx, Rng, Rot, mul, narrow};
 
     fn random_speed(rng: &mut Rng, limit: Fx) -> Speed {
         narrow(rng.range(-limit, limit))

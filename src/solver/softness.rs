@@ -6,10 +6,12 @@
 //! biasRate = omega / a1,  massScale = a2 a3,  impulseScale = a3
 //! ```
 
+use super::limits::units;
+#[cfg(test)]
 use super::limits::{Faults, STEP_MAX};
 use crate::fx;
 use crate::math::{
-    Fx, Rate, Speed, TAU, Unit, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
+    Fx, Rate, Speed, TAU, Unit, Vec2, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
 };
 
 /// The coefficients of a soft constraint.
@@ -71,7 +73,20 @@ impl Softness {
     /// The negated part of a spring's impulse that comes from its stretch: `massScale biasRate x`, about `h omega^2 x`.
     /// The product is rounded to a [`Speed`] at the end, because the bias rate times a long stretch does not fit one.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
-        narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
+        narrow(self.push_wide(stretch))
+    }
+
+    fn push_wide(&self, stretch: Fx) -> Fx {
+        fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into())
+    }
+
+    /// [`Self::push`] along the direction of `stretch`, with components of at most `most`, in units of [`Speed`].
+    pub(crate) fn push_along(&self, stretch: Vec2<Fx>, most: Fx) -> [i64; 2] {
+        // The bias rate times a longer stretch does not fit.
+        let longest = Fx::MAX / (i64::from(self.bias_rate.to_num::<i32>()) + 1);
+        let Vec2 { x, y } = stretch.shortened(longest);
+        let Vec2 { x, y } = Vec2::new(self.push_wide(x), self.push_wide(y)).shortened(most);
+        [units(x), units(y)]
     }
 
     /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`], up to twice the range of a [`Speed`].
@@ -84,7 +99,7 @@ impl Softness {
     }
 
     /// [`Self::wanted`], clamped to [`STEP_MAX`].
-    #[inline]
+    #[cfg(test)]
     pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
         let wanted = self.wanted(v, bias, lambda);
         let limit = i64::from(STEP_MAX.to_bits());

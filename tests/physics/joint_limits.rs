@@ -3,7 +3,7 @@
 use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, TAU, Vec2};
-use lockstep2d::solver::{Distance, JointDef, JointKind, Prismatic, Revolute, Wheel};
+use lockstep2d::solver::{Distance, JointDef, JointKind, JointLimit, Prismatic, Revolute, Wheel};
 use lockstep2d::world::{Config, World};
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
@@ -152,4 +152,29 @@ fn the_angle_of_a_hinge_counts_turns() {
     let joint = bench.join(JointDef::new(bench.a, bench.b, kind));
     bench.run(600, |_, _| {});
     close(bench.world.joint_angle(joint).expect("there"), -nine, nine / 100, "rad");
+}
+
+/// The limit moves past the slider or strut, whose motor or brake is unlimited. The gap shrinks by `e^-60` in a second.
+#[test]
+fn a_strong_motor_returns_to_a_limit_that_it_is_beyond() {
+    let kinds: [fn(Fx) -> JointKind; 2] = [
+        |speed| Prismatic::new().limit(fx!(0), fx!(3)).motor(speed, Fx::MAX).into(),
+        |speed| Distance::new().limit(fx!(0), fx!(3)).motor(speed, Fx::MAX).into(),
+    ];
+    for (at, kind) in kinds.into_iter().enumerate() {
+        for (speed, in_block) in [(fx!(1), false), (fx!(0), false), (fx!(1), true), (fx!(0), true)] {
+            let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(0)), fx!(0));
+            let joint = bench.join(JointDef::new(bench.a, bench.b, kind(speed)));
+            if in_block {
+                bench.join(JointDef::new(bench.a, bench.b, Distance::rope(fx!(10))));
+            }
+            bench.run(10, |_, _| {});
+            let limit = JointLimit { lower: fx!(0), upper: fx!(2) };
+            bench.world.set_joint_limit(joint, Some(limit)).expect("valid");
+            bench.run(30, |_, _| {});
+            let what = format!("kind {at} at {speed} m/s, in a block: {in_block}");
+            close(bench.world.body(bench.b).expect("there").position().x, fx!(2), fx!(0.001), &what);
+            close(bench.world.joint_force(joint).expect("there").0.length(), fx!(0), fx!(0.1), &what);
+        }
+    }
 }

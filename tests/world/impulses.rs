@@ -1,9 +1,9 @@
-//! Impulses and motors whose velocity exceeds the formats.
+//! Impulses, forces, springs and motors that exceed the formats.
 
-use lockstep2d::body::BodyDef;
+use lockstep2d::body::{Area, BodyDef, MassSource};
 use lockstep2d::fx;
-use lockstep2d::math::{Fx, Vec2};
-use lockstep2d::solver::{JointDef, Motor};
+use lockstep2d::math::{Fx, Vec2, fx_div, fx_mul};
+use lockstep2d::solver::{Distance, JointDef, Motor};
 use lockstep2d::world::Explosion;
 
 use super::{ball, spawn, square, weightless};
@@ -55,4 +55,91 @@ fn a_force_acts_at_its_point_although_the_mass_changes() {
     let body = world.body(id).expect("there");
     assert!((body.velocity().y - fx!(5) / 60).abs() < fx!(0.0001), "{}", body.velocity().y);
     assert!(body.angular_velocity().abs() < fx!(0.0001), "{}", body.angular_velocity());
+}
+
+/// 100 N accelerate 1 kg for a tick, wherever the spring would pull without this limit.
+#[test]
+fn a_long_spring_of_limited_force_pulls_along_its_direction() {
+    for (hertz, scale, in_block) in [
+        (fx!(30), 1, false),
+        (fx!(30), 1, true),
+        (fx!(60), 1000, false),
+        (fx!(60), 1000, true),
+        (fx!(1), 1_000_000, false),
+    ] {
+        let mut world = weightless();
+        let wall = spawn(&mut world, BodyDef::fixed(), ball(fx!(0.1)));
+        let place = (fx!(-100) * scale, fx!(-25) * scale);
+        let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.4) };
+        let id = spawn(&mut world, BodyDef::dynamic().position(place).mass(mass), ball(fx!(0.5)));
+        let spring = Motor::new().linear_spring(hertz, fx!(1), fx!(100));
+        world.add_joint(&JointDef::new(wall, id, spring)).expect("valid");
+        if in_block {
+            world.add_joint(&JointDef::new(wall, id, Distance::rope(fx!(1000000)))).expect("valid");
+        }
+        world.step();
+        let v = world.body(id).expect("there").velocity();
+        direction_is(v, (fx!(0.970143), fx!(0.242536)));
+        let what = format!("{hertz} Hz, scale {scale}, in a block: {in_block}");
+        assert!((v.length() - fx!(100 / 60)).abs() < fx!(0.0001), "{what}: {v:?}");
+        assert_eq!(world.faults(), 0, "{what}");
+    }
+}
+
+#[test]
+fn a_motor_brakes_a_fast_body_along_the_difference_of_the_velocities() {
+    let mut world = weightless();
+    let wall = spawn(&mut world, BodyDef::fixed(), ball(fx!(0.1)));
+    let start = Vec2::new(fx!(-390), fx!(-60));
+    let id = spawn(&mut world, BodyDef::dynamic().velocity(start), ball(fx!(0.5)));
+    let motor = Motor::new().linear((fx!(500), fx!(100)), fx!(10));
+    world.add_joint(&JointDef::new(wall, id, motor)).expect("valid");
+    world.step();
+    // 890 by 160 m/s.
+    direction_is(world.body(id).expect("there").velocity() - start, (fx!(0.984221), fx!(0.176939)));
+    assert_eq!(world.faults(), 0);
+}
+
+/// The velocity is limited to 400 m/s.
+#[test]
+fn a_light_body_moves_in_the_direction_of_its_force() {
+    for damping in [fx!(0), fx!(1), fx!(20)] {
+        let mut world = weightless();
+        let light = BodyDef::dynamic().linear_damping(damping);
+        let pushed = spawn(&mut world, light, ball(fx!(0.01)));
+        let blown = spawn(&mut world, light.position((fx!(100), fx!(0))), ball(fx!(0.01)));
+        let wind = Area { force: Vec2::new(fx!(1000000), fx!(500000)), ..Area::new() };
+        let wind = ball(fx!(20)).area(wind);
+        spawn(&mut world, BodyDef::fixed().position((fx!(100), fx!(0))), wind);
+        world.apply_force_to_centre(pushed, (fx!(600), fx!(300))).expect("there");
+        world.step();
+        for id in [pushed, blown] {
+            let v = world.body(id).expect("there").velocity();
+            direction_is(v, (fx!(0.894427), fx!(0.447214)));
+            assert!((v.length() - fx!(400)).abs() < fx!(0.001), "{v:?} with damping {damping}");
+        }
+    }
+}
+
+/// `w = r P / (m k^2)`.
+#[test]
+fn very_heavy_and_very_light_bodies_are_turned_by_impulses() {
+    for (mass, gyration, arm, impulse) in [
+        (fx!(1000000), fx!(80), fx!(100), fx!(50000000)),
+        (fx!(0.00001), fx!(0.002), fx!(0.005), fx!(1) / (1 << 26)),
+        (fx!(2), fx!(0.5), fx!(0.25), fx!(3)),
+    ] {
+        for sign in [1, -1] {
+            let mut world = weightless();
+            let source = MassSource::Given { mass, centre: Vec2::ZERO, gyration };
+            let id = spawn(&mut world, BodyDef::dynamic().mass(source), ball(fx!(0.01)));
+            world.apply_impulse(id, (fx!(0), impulse * sign), (arm, fx!(0))).expect("there");
+            // The products are in the order in which they fit.
+            let per_arm =
+                fx_div(fx_mul(fx_div(arm, gyration).expect("not 0"), impulse), mass).expect("not 0");
+            let expected = fx_div(per_arm, gyration).expect("not 0") * sign;
+            let found = world.body(id).expect("there").angular_velocity();
+            assert!((found - expected).abs() < expected.abs() / 1000, "{found} instead of {expected} rad/s");
+        }
+    }
 }

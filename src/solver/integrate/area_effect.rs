@@ -6,10 +6,11 @@
 //! v' = v + h a - h c (v' - u)   =>   v' = (v + h (a + c u)) / (1 + h c)
 //! ```
 
+use super::super::limits::units;
 use super::super::settings::Tuning;
 use super::MovingBody;
 use crate::body::{Body, BodySettings};
-use crate::math::{Fx, Speed, Vec2, fx_mul, narrow};
+use crate::math::{Fx, Vec2, fx_mul, narrow};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AreaEffect {
@@ -31,12 +32,13 @@ impl MovingBody {
     pub(in crate::solver) fn in_areas(index: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) -> Self {
         let AreaEffect { acceleration, angular_acceleration, force, torque, linear_drag, angular_drag } =
             *effect;
-        let (mut step, mut spin_step) = body.step_with(force, torque, tuning.rate);
-        let per_step = |acceleration: Fx| -> Speed { narrow(acceleration / i64::from(tuning.rate)) };
-        step += Vec2::new(per_step(acceleration.x), per_step(acceleration.y));
+        let ([x, y], mut spin_step) = body.step_with(force, torque, tuning.rate);
+        let per_step = |acceleration: Fx| acceleration / i64::from(tuning.rate);
+        let with = |step: i64, acceleration: Fx| step.saturating_add(units(per_step(acceleration)));
+        let step = [with(x, acceleration.x), with(y, acceleration.y)];
         if body.turns() {
             let turn = per_step(fx_mul(angular_acceleration, body.radius_of_gyration()));
-            spin_step = spin_step.saturating_add(turn);
+            spin_step = spin_step.saturating_add(narrow(turn));
         }
         let mut settings: BodySettings = *body.settings();
         settings.linear_damping = settings.linear_damping.saturating_add(linear_drag);

@@ -11,7 +11,7 @@ mod tests;
 
 use super::body::SolverBody;
 use super::context::StepContext;
-use super::limits::Faults;
+use super::limits::{Faults, STEP_MAX, shortened, units};
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
 use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
@@ -56,7 +56,7 @@ impl MovingBody {
             // Gravity is a force, and forces do not move a body without mass.
             BodyKind::Dynamic => {
                 let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
-                Some(Self::dynamic(index, Vec2::ZERO, Speed::ZERO, &settings, tuning))
+                Some(Self::dynamic(index, [0; 2], Speed::ZERO, &settings, tuning))
             }
         }
     }
@@ -64,17 +64,24 @@ impl MovingBody {
     #[inline(always)]
     fn dynamic(
         index: u32,
-        force_step: Vec2<Speed>,
+        force_step: [i64; 2],
         spin_step: Speed,
         settings: &BodySettings,
         tuning: &Tuning,
     ) -> Self {
         let BodySettings { linear_damping, angular_damping, gravity_scale, locks, .. } = *settings;
-        let gravity = |step: Fx| {
-            if gravity_scale == Fx::ONE { narrow(step) } else { narrow(fx_mul(step, gravity_scale)) }
+        let with_gravity = |force: i64, step: Fx| {
+            let step = if gravity_scale == Fx::ONE { step } else { fx_mul(step, gravity_scale) };
+            force.saturating_add(units(step))
         };
-        let gravity_step = Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y));
-        let step: Vec2<Speed> = gravity_step + force_step;
+        let [x, y] = force_step;
+        let step = [with_gravity(x, tuning.gravity_step.x), with_gravity(y, tuning.gravity_step.y)];
+        let most = u64::from(STEP_MAX.to_bits().unsigned_abs());
+        let step = if step[0].unsigned_abs().max(step[1].unsigned_abs()) > most {
+            shortened_step(step, linear_damping, tuning.rate)
+        } else {
+            shortened(step, STEP_MAX, &mut 0)
+        };
         let factor = |damping| damping_factor(damping, tuning.rate).to_bits();
         let is_held = i32::from(locks.x || locks.y);
         MovingBody {
@@ -158,6 +165,13 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     let sub_step = SubStep::of(tuning.rate);
     machine.run(kernel::Displacements { moving, bodies, sub_step, faults: &mut faults });
     context.add_faults(faults);
+}
+
+/// Shortens a velocity change so that damping leaves 512 m/s of it, which is more than any speed limit.
+#[cold]
+fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
+    let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));
+    shortened(step, narrow(most), &mut 0)
 }
 
 /// A damped speed, rounded towards 0, so that a body does not creep for ever.

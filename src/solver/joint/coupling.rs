@@ -218,13 +218,15 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// The row of a pulley and the position along it. `ropes` lead from the wheels to the anchors. One factor of at most 1
-/// scales both directions, so that the direction on B, `ratio` times as long, fits [`Unit`].
+/// The row of a pulley and the position along it. `ropes` lead from the wheels to the anchors. One factor scales both
+/// directions, of which that on B is `ratio` times as long, to at most [`LONGEST`] and at least a quarter of it.
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
         // An anchor at its wheel counts as hanging down.
         .map(|rope| rope.normalized_with_length().unwrap_or((-Vec2::Y, Fx::ZERO)));
-    let scale = fx_div(LONGEST, ratio).unwrap_or(Fx::ONE).min(Fx::ONE);
+    let over_ratio = |most: Fx| fx_div(most, ratio).unwrap_or(Fx::ONE);
+    let scale =
+        if ratio < Fx::ONE { LONGEST.min(over_ratio(Fx::ONE)) } else { over_ratio(LONGEST).min(Fx::ONE) };
     let n_a: Vec2<Unit> = -to_a.widen().scale(scale).narrow();
     let n_b: Vec2<Unit> = to_b.widen().scale(fx_mul(scale, ratio)).narrow();
     let arms = [pose.lever_a.arm.widen().cross(n_a.widen()), pose.lever_b.arm.widen().cross(n_b.widen())];

@@ -7,7 +7,7 @@ use super::options::{Drive, JointLimit, Soft, Spring};
 use super::point::{JointPoint, PointTask};
 use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
-use crate::math::{Fx, Vec2, fx_div};
+use crate::math::{Fx, Vec2, fx_div, fx_mul};
 use crate::solver::limits::SPEED_MAX;
 
 /// Slots of impulses in the state of a joint. A point uses two slots.
@@ -79,7 +79,9 @@ impl Parts<'_> {
         limit: Option<JointLimit>,
     ) {
         if let Some(Drive { speed, max }) = drive {
-            let task = RowTask::Drive { speed, max: self.impulse(max), limit };
+            let Softness { bias_rate, mass_scale, .. } = self.softness;
+            let return_rate = fx_mul(bias_rate.into(), mass_scale.into());
+            let task = RowTask::Drive { speed, max: self.impulse(max), limit, return_rate };
             self.row(slot::DRIVE, direction, task);
         }
     }

@@ -3,11 +3,15 @@
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::{Faults, clamp_lambda};
+use super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX, shortened};
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::pose::JointPose;
-use crate::math::{Speed, Unit, Vec2};
+use crate::fx;
+use crate::math::{Fx, Speed, Unit, Vec2};
+
+/// Largest push in m/s of a spring of limited force. It is so large that velocities hardly change its direction.
+const PUSH_MAX: Fx = fx!(1048576);
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
@@ -23,8 +27,7 @@ pub(super) struct JointPoint {
     pub(super) slot: u8,
     task: PointTask,
     pub(super) block: PointBlock,
-    /// For a motor: the negated target velocity. For a spring: [`Softness::push`] of its stretch.
-    bias: Vec2<Speed>,
+    goal: PointGoal,
     /// Whether a block computes the impulse.
     pub(super) is_blocked: bool,
     /// `L`, in world axes.
@@ -34,7 +37,7 @@ pub(super) struct JointPoint {
 impl JointPoint {
     pub(super) fn new(slot: u8, task: PointTask, lambda: Vec2<Speed>) -> Self {
         let block = PointBlock::default();
-        JointPoint { slot, task, block, bias: Vec2::ZERO, is_blocked: false, lambda }
+        JointPoint { slot, task, block, goal: PointGoal::default(), is_blocked: false, lambda }
     }
 
     pub(super) fn softness(&self) -> Option<&Softness> {
@@ -57,26 +60,30 @@ impl JointPoint {
         a: &SolverBody,
         b: &SolverBody,
         faults: &mut Faults,
-    ) -> Vec2<Speed> {
-        let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
-        self.block.wanted(a, b, goal, softness, self.lambda, faults)
+    ) -> [i64; 2] {
+        self.block.wanted(a, b, self.goal, softness, self.lambda, faults)
     }
 
     #[inline]
     pub(super) fn refresh(&mut self, pose: &JointPose) {
-        (self.block, self.bias) = match &self.task {
-            PointTask::Spring { softness, .. } => {
-                let push = Vec2::new(softness.push(pose.gap.x), softness.push(pose.gap.y));
-                (pose.block(softness.mass_scale), push)
+        let mass_scale = match &self.task {
+            PointTask::Spring { softness, max } => {
+                let most = if *max == Speed::MAX { IMPULSE_MAX.into() } else { PUSH_MAX };
+                self.goal.push = softness.push_along(pose.gap, most);
+                softness.mass_scale
             }
-            PointTask::Drive { velocity, .. } => (pose.block(Unit::ONE), -*velocity),
+            PointTask::Drive { velocity, .. } => {
+                self.goal.bias = -*velocity;
+                Unit::ONE
+            }
         };
+        self.block = pose.block(mass_scale);
     }
 
     #[inline]
     pub(super) fn warm_start(&mut self, bodies: &mut BodyPair<'_>) {
-        clamp_lambda(&mut self.lambda.x, bodies.faults);
-        clamp_lambda(&mut self.lambda.y, bodies.faults);
+        let lambda = [self.lambda.x, self.lambda.y].map(|part| part.to_bits().into());
+        self.lambda = shortened(lambda, STEP_MAX, bodies.faults);
         self.block.apply(self.lambda, bodies);
     }
 
@@ -85,13 +92,11 @@ impl JointPoint {
         let lambda = &mut self.lambda;
         match (&self.task, pass) {
             (PointTask::Spring { softness, max }, Pass::Bias) => {
-                let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
-                self.block.solve_within(bodies, goal, softness, *max, lambda);
+                self.block.solve_within(bodies, self.goal, softness, *max, lambda);
             }
             (PointTask::Spring { .. }, Pass::Relax) => {}
             (PointTask::Drive { max, .. }, _) => {
-                let goal = PointGoal { bias: self.bias, push: Vec2::ZERO };
-                self.block.solve_within(bodies, goal, &Softness::RIGID, *max, lambda);
+                self.block.solve_within(bodies, self.goal, &Softness::RIGID, *max, lambda);
             }
         }
     }

@@ -6,7 +6,8 @@
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
 //! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (divided by s for a torque)
-//!          towards a limit of the joint, speed is at most C / h before the limit, and 0 beyond it
+//!          towards a limit, speed is at most C / h before the limit, and massScale biasRate C beyond it
+//!          (0 in the relax pass, in which the limit does not push either)
 //! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
 //!          d = -(vn + C / h)                                                 while C > 0
 //! hold     as a limit that is reached, with L of either sign
@@ -40,7 +41,8 @@ pub(super) enum RowTask {
     /// point masses.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
-    Drive { speed: Fx, max: Fx, limit: Option<JointLimit> },
+    /// `return_rate` is `massScale biasRate` of the joint.
+    Drive { speed: Fx, max: Fx, limit: Option<JointLimit>, return_rate: Fx },
     /// Keeps the position from falling below a bound.
     Lower { bound: Fx },
     /// Keeps the position from rising above a bound.
@@ -73,6 +75,8 @@ pub(super) struct JointRow {
     pub(super) row: Row,
     /// For a spring: [`Softness::push`] of its stretch. Otherwise: the negated target speed.
     bias: Speed,
+    /// For a motor: `bias` in the relax pass.
+    relax_bias: Speed,
     /// Softness at the current pose for a spring, [`Softness::RIGID`] for a motor, otherwise that of the joint.
     softness: Softness,
     /// Whether the row is a limit that is not reached.
@@ -105,6 +109,7 @@ impl JointRow {
             task,
             row,
             bias,
+            relax_bias: Speed::ZERO,
             softness,
             open: false,
             bounds,
@@ -167,8 +172,6 @@ impl JointRow {
         (self.row, self.denominator, self.reach) = (row, denominator, reach);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
-        let bias_rate = Fx::from(self.softness.bias_rate);
-        let approach = |gap: Fx| approach(gap, bias_rate, rate);
         match self.task {
             RowTask::Spring { softness, target, lower, upper } => {
                 self.softness = match self.direction {
@@ -179,19 +182,23 @@ impl JointRow {
                 self.bias = self.softness.push(metres(position.saturating_sub(target)));
                 self.bounds = (measure.lambda(lower), measure.lambda(upper));
             }
-            RowTask::Drive { speed, max, limit } => {
-                let within = |JointLimit { lower, upper }: JointLimit| {
-                    let ahead = approach(metres(upper.saturating_sub(position)));
-                    let behind = approach(metres(position.saturating_sub(lower)));
+            RowTask::Drive { speed, max, limit, return_rate } => {
+                let within = |JointLimit { lower, upper }: JointLimit, return_rate: Fx| {
+                    let approach = |gap: Fx| approach(metres(gap), return_rate, rate);
+                    let ahead = approach(upper.saturating_sub(position));
+                    let behind = approach(position.saturating_sub(lower));
                     metres(speed).min(ahead).max(behind.saturating_neg())
                 };
-                let speed = limit.map_or_else(|| metres(speed), within);
-                self.bias = -narrow::<fixed::types::extra::U21>(speed).max(-Speed::MAX);
+                [self.bias, self.relax_bias] = [return_rate, Fx::ZERO].map(|return_rate| {
+                    let speed = limit.map_or_else(|| metres(speed), |limit| within(limit, return_rate));
+                    -narrow::<fixed::types::extra::U21>(speed).max(-Speed::MAX)
+                });
                 let max = measure.lambda(max);
                 self.bounds = (-max, max);
             }
             RowTask::Hold { target } => {
-                self.bias = narrow(fx_mul(metres(position.saturating_sub(target)), bias_rate))
+                let gap = metres(position.saturating_sub(target));
+                self.bias = narrow(fx_mul(gap, self.softness.bias_rate.into()));
             }
             RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, rate),
             RowTask::Upper { bound } => {
@@ -244,7 +251,8 @@ impl JointRow {
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
-            (RowTask::Drive { .. }, _) => (&Softness::RIGID, self.bias, Speed::ZERO),
+            (RowTask::Drive { .. }, Pass::Bias) => (&Softness::RIGID, self.bias, Speed::ZERO),
+            (RowTask::Drive { .. }, Pass::Relax) => (&Softness::RIGID, self.relax_bias, Speed::ZERO),
             (_, Pass::Bias) => (&self.softness, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
@@ -253,7 +261,7 @@ impl JointRow {
 }
 
 /// The largest speed in m/s at which a limit may be approached: the limit is not passed within a sub-step. Beyond the
-/// limit, where `gap` is negative, the speed is `bias_rate` times the gap, which is 0 for a motor.
+/// limit, where `gap` is negative, the speed is `bias_rate` times the gap.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

@@ -60,7 +60,7 @@ fn an_impulse_of_limited_length_is_no_longer() {
         let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
         let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
         for _ in 0..3 {
-            let goal = PointGoal { bias, push: Vec2::ZERO };
+            let goal = PointGoal { bias, push: [0; 2] };
             let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
             block.solve_within(bodies, goal, &Softness::RIGID, most, &mut lambda);
         }
@@ -101,7 +101,7 @@ fn a_soft_block_is_an_isotropic_spring() {
         let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
         // The second update starts with the impulse of the first, and changes it only by rounding errors.
         for _ in 0..2 {
-            let goal = PointGoal { bias: Vec2::ZERO, push };
+            let goal = PointGoal { bias: Vec2::ZERO, push: units_of(push) };
             block.solve_within(bodies, goal, &softness, Speed::MAX, &mut lambda);
         }
         let p = b.velocity - a.velocity - start;

@@ -12,7 +12,7 @@
 //! corresponds to `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
-use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
+use crate::math::{Length, Ratio, Reciprocal, Unit, div_round, mul, round_shift, saturate, saturate_wide};
 
 impl Row {
     /// The row, its denominator and `s`. The last two are 0 if impulses turn neither body.
@@ -54,14 +54,14 @@ fn quotient(n: i64, d: i64) -> i64 {
 /// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that impulses turn.
 /// It need not be exact, because it only sets the units of a row.
 pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
-    // 1 / k has 21 fraction bits, so that the sum has 72.
-    let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
-        if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
+    // 1 / k has 21 fraction bits, so that the sum has 72. In gears it is up to 5e5.
+    let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> u64 {
+        let (product, extra) = inverse_gyration.times_exact(Unit::ONE);
+        if fraction == 0 { 0 } else { round_shift(product, (extra + 9).min(63)).unsigned_abs() }
     };
     let (a, b) = (inverse(a, fractions.a), inverse(b, fractions.b));
-    let square = |inverse: Speed, fraction: Unit| {
-        let inverse = u128::from(inverse.to_bits().unsigned_abs());
-        inverse * inverse * u128::from(fraction.to_bits().unsigned_abs())
+    let square = |inverse: u64, fraction: Unit| {
+        u128::from(inverse).pow(2) * u128::from(fraction.to_bits().unsigned_abs())
     };
     let sum = square(a, fractions.a) + square(b, fractions.b);
     if sum == 0 {
@@ -76,7 +76,7 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     // `root` is `2^(31 + shift/2) / sqrt(sum)`. A length is `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
-    let most = (100u64 << 43) / u64::from(a.max(b).to_bits().unsigned_abs()).max(1);
+    let most = (100 << 43) / a.max(b).max(1);
     Length::from_bits(i32::try_from(length.min(most.into())).unwrap_or(i32::MAX))
 }
 
@@ -84,7 +84,7 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
 mod tests {
     use super::*;
     use crate::fx;
-    use crate::math::{Fx, Rng, Vec2, fx_div, fx_mul, narrow, widen};
+    use crate::math::{Fx, Rng, Speed, Vec2, fx_div, fx_mul, narrow, widen};
     use crate::solver::body::SolverBody;
     use crate::solver::limits::IMPULSE_MAX;
     use crate::solver::softness::Softness;

@@ -12,7 +12,8 @@ use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
 const KEPT_MOVE_MAX: Fx = fx!(1);
 
 impl World {
-    /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up.
+    /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up, to ±2^31
+    /// along each axis, and their torques to ±2^31 N m, with a resolution of 2^-32.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.

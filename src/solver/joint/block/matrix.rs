@@ -80,11 +80,12 @@ impl Factor {
                     &done[start_column + both.min(column) - from_column..start_column + column - from_column];
                 let entry = i64::from(entries[start + column - from]);
                 let scaled = round_shift(entry * scales[row], 30) * scales[column];
-                let rest = scaled - dot(upper, &own[both.min(column) - from..column - from]);
+                let sum = dot(upper, &own[both.min(column) - from..column - from]);
+                let rest = scaled.saturating_sub(sum);
                 let quotient = round_shift_wide(i128::from(rest) * i128::from(inverses[column]), 60);
                 own[column - from] = saturate(saturate_wide(quotient));
             }
-            let pivot = ((ONE + excess) << 30) - dot(own, own);
+            let pivot = ((ONE + excess) << 30).saturating_sub(dot(own, own));
             inverses.push(inverse_root(pivot.max(PIVOT_MIN)));
         }
     }
@@ -113,7 +114,7 @@ impl Factor {
     }
 }
 
-/// The product of two rows of a factor, with 60 fraction bits.
+/// The product of two rows of a factor, with 60 fraction bits. It may wrap after a pivot was clamped.
 fn dot(a: &[i32], b: &[i32]) -> i64 {
     a.iter().zip(b).map(|(&a, &b)| i64::from(a) * i64::from(b)).fold(0, i64::wrapping_add)
 }

@@ -210,8 +210,8 @@ impl Unit {
             Source::Part(ListPart::Point(at)) => match list.point(at).softness() {
                 Some(softness) if pass == Pass::Bias => {
                     let [a, b] = bodies();
-                    let Vec2 { x, y } = list.point(at).wanted(softness, &a, &b, faults);
-                    [x.to_bits().into(), y.to_bits().into(), 0]
+                    let [x, y] = list.point(at).wanted(softness, &a, &b, faults);
+                    [x, y, 0]
                 }
                 _ => [0; 3],
             },

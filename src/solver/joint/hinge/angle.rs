@@ -1,5 +1,4 @@
-//! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`. Unlike there, the target speed of a
-//! motor beyond a limit is clamped to the speed at which the limit pushes the joint back, not to 0.
+//! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
