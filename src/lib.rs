@@ -56,7 +56,7 @@ pub mod world;
 
 /// Version of the engine's arithmetic, increased when the same inputs may give another state. Snapshots of another
 /// version are rejected, and replays of another version cannot be played.
-pub const SEMANTICS: u32 = 22;
+pub const SEMANTICS: u32 = 23;
 
 /// Version of this crate.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
