@@ -1111,7 +1111,7 @@ export interface MatchOptions {
  * - `playing`: has a seat, or is a dedicated server, in a match that has begun.
  * - `paused`: hears no majority of the peers, directly or through others. Possible for a moment after joining.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
- * - `kicked`: removed permanently.
+ * - `kicked`: removed by a vote.
  * - `leaving`: announces its departure.
  * - `left`: has left, and still answers peers that lack packets.
  * - `finished`: all ticks are final, and this peer still answers peers. See `MatchDriver.ended`.
@@ -1222,7 +1222,7 @@ export class Match extends Handle {
     pause(paused: boolean): void;
     /** Votes for going on without a missing peer. */
     goOnWithout(peer: number): void;
-    /** Votes for removing the player with this key permanently. */
+    /** Votes for removing the player with this key, while this peer has a vote. */
     kick(key: bigint): void;
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;

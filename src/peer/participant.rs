@@ -312,7 +312,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().and_then(|session| session.link(peer))
     }
 
-    /// Votes to remove a peer permanently, as [`Session::kick`] does.
+    /// Votes to remove a peer, as [`Session::kick`] does.
     pub fn kick(&mut self, key: Key) {
         if let Some(session) = self.endpoint.session_mut() {
             session.kick(key);

@@ -149,7 +149,7 @@ impl Session {
         if next.number == self.view.number {
             return false;
         }
-        self.changes.list.extend_from_slice(changes);
+        self.changes.extend(changes);
         let before = core::mem::replace(&mut self.view, next);
         self.tell_difference(&before);
         let agreement = &mut self.agreement;

@@ -6,7 +6,6 @@ use alloc::vec::Vec;
 use super::address::Address;
 use super::config::{Config, ConfigError};
 use super::contacts::Contacts;
-use super::event::Status;
 use super::guests::Guests;
 use super::id::{Key, PeerId, Tick};
 use super::join_packet::{ADDRESS_LIST_MAX, JoinPacket, OFFER_BYTES_MAX, RefusalReason};
@@ -358,9 +357,8 @@ impl Endpoint {
     /// Asks other peers to serve this peer if it has no vote and has lost contact with the majority.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
-        let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();
         let nonce = |address: &Address| token(self.secret, self.me, address).wrapping_add(now);
-        if let Some(asked) = self.contacts.update(now, is_silent, nonce) {
+        if let Some(asked) = self.contacts.update(now, session.needs_contact(), nonce) {
             self.hello(asked.address, asked.nonce, asked.cookie);
         }
     }

@@ -31,7 +31,7 @@ pub enum Status {
     Paused,
     /// The others continue without this peer. A player requests a seat again.
     Dropped,
-    /// The others removed this peer for good, or refuse it a seat because they removed its [`Key`](super::Key).
+    /// The others removed this peer, or refuse it a seat because they removed its [`Key`](super::Key).
     Kicked,
     /// Announces its departure.
     Leaving,
@@ -98,7 +98,7 @@ pub enum Event {
         /// First tick without the peer in the seat.
         from: Tick,
     },
-    /// Play stalls because inputs of a peer are missing.
+    /// Play stalls because inputs of a peer are missing, or because the others may not run further ahead of it.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,

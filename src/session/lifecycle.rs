@@ -6,7 +6,7 @@ use super::config::Fault;
 use super::event::{Event, Status};
 use super::id::{PeerId, Tick};
 use super::row::{Removal, SeatWant};
-use super::state::{Role, Session};
+use super::state::{CHANGES_KEPT, Role, Session};
 use super::view::{View, has_bit};
 
 #[derive(Clone, Debug)]
@@ -141,7 +141,7 @@ impl Session {
         }
         if self.lifecycle.left || self.wants.leave && !votes {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
-            let known = !self.lifecycle.left || self.all_voters(|_| true);
+            let known = !self.lifecycle.left || self.all_voters(|row| row.ack >= self.view.cut);
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
@@ -161,6 +161,12 @@ impl Session {
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,
         }
+    }
+
+    /// Whether a peer without a vote has lost contact with the majority before the end.
+    pub(super) fn needs_contact(&self) -> bool {
+        let is_over = matches!(self.status(), Status::Left | Status::Finished { .. } | Status::Closed);
+        !is_over && self.view.voter(self.me).is_none() && !self.is_connected()
     }
 
     /// Whether a peer that has finished or left may stop answering. `known` is whether no other peer needs its answers.
@@ -203,7 +209,10 @@ impl Session {
     fn tell_too_far_behind(&mut self) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
-        if behind > self.config.log_ticks && !self.lifecycle.too_far_behind {
+        let views = self.peers.list.iter().filter_map(|remote| remote.row.as_ref()).map(|row| row.view).max();
+        let missed = views.unwrap_or(0).saturating_sub(self.view.number);
+        let is_too_far = behind > self.config.log_ticks || missed > u32::from(CHANGES_KEPT);
+        if is_too_far && !self.lifecycle.too_far_behind {
             self.lifecycle.too_far_behind = true;
             self.events.push_back(Event::TooFarBehind);
         }

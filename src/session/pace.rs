@@ -35,7 +35,7 @@ pub(super) struct Pace {
 }
 
 /// A voter waits if it leads the slowest other player by more than this number of ticks.
-const AHEAD_MAX: i64 = 6;
+const AHEAD_MAX: Tick = 6;
 /// Largest lateness that is made up, in ticks.
 const LATE_MAX: u64 = 3;
 /// A peer plays ticks before they are due while [`Pace::behind`] is at least this number.
@@ -89,7 +89,7 @@ impl Session {
         let ahead = self.ticks_ahead();
         let own = self.view.voter(self.me).is_some();
         let slowest = ahead.last().copied();
-        self.pace.held = own && slowest.is_some_and(|ahead| ahead > AHEAD_MAX * PART);
+        self.pace.held = own && slowest.is_some_and(|ahead| ahead > i64::from(AHEAD_MAX) * PART);
         let tick = self.pace.tick_micros;
         let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
         let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
@@ -127,6 +127,33 @@ impl Session {
             .collect();
         ahead.sort_unstable();
         ahead
+    }
+
+    /// The peer that play waits for: one whose input for the first incomplete tick is missing, or, if that peer waits as
+    /// well, the slowest of the players that could play on.
+    #[must_use]
+    pub fn waiting_for(&self) -> Option<PeerId> {
+        let tick = self.progress.complete;
+        let missing = |&index: &usize| {
+            let span = self.view.spans.get(index)?;
+            (span.contains(tick) && self.log.next(index) <= tick).then_some(span.owner)
+        };
+        let owner = self.progress.live.iter().find_map(missing)?;
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let players = self
+            .peers
+            .voters()
+            .filter(|(_, remote)| within(remote.fresh, fresh, active) && self.plays_at(remote.id, tick));
+        let able = players.filter_map(|(_, remote)| {
+            let row = remote.row.as_ref().filter(|row| row.played < row.ack)?;
+            Some((row.played, remote.id))
+        });
+        let waits = |least: Tick| {
+            let row = self.peers.find(owner).and_then(|remote| remote.row.as_ref());
+            row.is_some_and(|row| row.played >= least.saturating_add(AHEAD_MAX))
+        };
+        let slowest = able.min().filter(|&(played, _)| waits(played));
+        Some(slowest.map_or(owner, |(_, slowest)| slowest))
     }
 
     fn plays_at(&self, id: PeerId, tick: Tick) -> bool {

@@ -5,7 +5,7 @@ use super::event::Event;
 use super::id::{PeerId, Tick};
 use super::input_log::Added;
 use super::packet::{self, Packet};
-use super::row::Row;
+use super::row::{Removal, Row};
 use super::state::Session;
 
 /// Lead over the complete ticks above which inputs are dropped, so that no peer exhausts the memory.
@@ -105,7 +105,11 @@ impl Session {
         }
         match self.log.add(index, start, inputs) {
             Added::Nothing => {}
-            Added::From(tick) => self.play.note_change(tick),
+            Added::From(tick) => {
+                self.play.note_change(tick);
+                // The peer is back, or its last inputs have arrived late.
+                self.wants.removals.retain(|removal| *removal != Removal::Without(owner));
+            }
             Added::Conflict(tick) => {
                 let Some(remote) = self.peers.find_mut(owner).filter(|remote| !remote.faulty) else { return };
                 remote.faulty = true;

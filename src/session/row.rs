@@ -53,7 +53,8 @@ pub(super) struct Row {
     pub(super) fin: Tick,
     /// Number of ticks that the game has played.
     pub(super) played: Tick,
-    /// For each span that ends after `fin`, in order: its index, and the first tick whose input the sender lacks.
+    /// For the first spans that end after `fin`, in order: the index, and the first tick whose input the sender lacks.
+    /// Others send no inputs of spans that are not listed.
     pub(super) have: Vec<(u16, Tick)>,
     /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,

@@ -127,7 +127,10 @@ impl Random {
     }
 }
 
-/// Decided changes, kept for peers that missed some.
+/// Number of changes that are kept for peers that missed some.
+pub(super) const CHANGES_KEPT: u16 = 1024;
+
+/// The last decided changes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     /// Number of the view that the first change leads to.
@@ -136,6 +139,13 @@ pub(super) struct Changes {
 }
 
 impl Changes {
+    pub(super) fn extend(&mut self, changes: &[Change]) {
+        self.list.extend_from_slice(changes);
+        let excess = self.list.len().saturating_sub(CHANGES_KEPT.into());
+        self.list.drain(..excess);
+        self.first = self.first.saturating_add(u32::try_from(excess).unwrap_or(0));
+    }
+
     pub(super) fn since(&self, number: u32) -> &[Change] {
         let skipped = number.checked_sub(self.first).and_then(|skipped| usize::try_from(skipped).ok());
         skipped.and_then(|skipped| self.list.get(skipped..)).unwrap_or_default()
@@ -252,15 +262,16 @@ impl Session {
     }
 
     /// Votes to continue without a missing peer, which may return. The vote of the [tie-holder](View::tie_holder) is
-    /// sufficient.
+    /// sufficient. The vote ends when further inputs of the peer arrive.
     pub fn go_on_without(&mut self, peer: PeerId) {
         if self.view.voter(peer).is_some() {
             self.remove(Removal::Without(peer));
         }
     }
 
-    /// Votes to remove a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient. A peer has at
-    /// most eight votes: a ninth one ends the oldest, and that peer may return.
+    /// Votes to remove a peer, which gets no seat while enough votes count. The vote of the
+    /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while this peer is a voter of the view. A peer has
+    /// at most eight votes: a ninth one ends the oldest, and that peer may return.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
@@ -366,17 +377,6 @@ impl Session {
     #[must_use]
     pub fn link(&self, peer: PeerId) -> Option<Link> {
         self.peers.find(peer).map(|remote| remote.link)
-    }
-
-    /// The peer whose input for the first incomplete tick is missing.
-    #[must_use]
-    pub fn waiting_for(&self) -> Option<PeerId> {
-        let tick = self.progress.complete;
-        let missing = |&span: &usize| {
-            let here = self.log.next(span);
-            self.view.spans.get(span).filter(|span| span.contains(tick) && here <= tick)
-        };
-        self.progress.live.iter().find_map(missing).map(|span| span.owner)
     }
 
     /// Statistics of the session so far.

@@ -5,12 +5,13 @@ use alloc::vec::Vec;
 
 use super::bytes::{Reader, Write};
 use super::config::Config;
+use super::event::Event;
 use super::id::{Key, NEVER, PeerId};
 use super::join_packet::{JoinPacket, RefusalReason};
 use super::packet::{Composer, Header, Packet, checksum};
 use super::row::{Ballot, Removal, Row, SeatWant};
 use super::start_state::StartState;
-use super::state::{Random, Role, Session};
+use super::state::{CHANGES_KEPT, Random, Role, Session};
 use super::view::{Change, Join, View};
 
 fn change() -> Change {
@@ -101,17 +102,71 @@ fn no_bytes_panic() {
     assert!(Packet::read(&longer, 2).is_err(), "a byte after the end");
 }
 
+/// The third of three players.
+fn session() -> Session {
+    let mut view = View::opened_by(PeerId(11), Key(1), 1, true);
+    view.found(PeerId(21), Key(2), 1, 2);
+    view.found(PeerId(31), Key(3), 1, 4);
+    let config = Config { input_bytes: 2, ..Config::new(5, 4) };
+    Session::new(config, PeerId(31), Key(3), Role::Player { seats: 1 }, view, 9).unwrap()
+}
+
+/// A packet of the first player.
+fn packet(row: &Row, first: u32, changes: &[Change]) -> Vec<u8> {
+    let mut own = Vec::new();
+    row.write(&mut own);
+    let header = Header { sender: PeerId(11), sequence: 1, sent: 1, echo: None };
+    let mut composer = Composer::new(&header, &own);
+    composer.changes(first, changes);
+    composer.finish(5)
+}
+
+#[test]
+fn forged_changes_do_not_fill_the_memory() {
+    let mut session = session();
+    let change = Change {
+        cut: 0,
+        from: 0,
+        end: None,
+        leaves: 0,
+        tie_holder: PeerId(11),
+        joins: [].into(),
+        ..change()
+    };
+    let kept = u32::from(CHANGES_KEPT);
+    let last = 3 * kept;
+    for number in 1..=last {
+        session.receive(0, &packet(&Row::new(0), number, core::slice::from_ref(&change)));
+    }
+    assert_eq!((session.view().number, session.changes.list.len()), (last, usize::from(CHANGES_KEPT)));
+    assert_eq!(session.changes.since(last), [change]);
+    assert_eq!(session.changes.since(last - kept + 1).len(), usize::from(CHANGES_KEPT));
+    assert!(session.changes.since(last - kept).is_empty());
+}
+
+/// Others keep the last changes.
+#[test]
+fn a_peer_that_missed_too_many_changes_knows_it() {
+    for (missed, is_too_far) in [(0, false), (1, true)] {
+        let mut session = session();
+        for step in 1..60_u32 {
+            let mut row = Row::new(u32::from(CHANGES_KEPT) + missed);
+            row.version = step;
+            let now = u64::from(step) * 16_000;
+            session.receive(now, &packet(&row, 0, &[]));
+            session.update(now);
+        }
+        let events: Vec<Event> = core::iter::from_fn(|| session.next_event()).collect();
+        assert!(events.contains(&Event::Waiting { peer: PeerId(11), heard: true }), "{events:?}");
+        assert_eq!(events.contains(&Event::TooFarBehind), is_too_far, "{events:?}");
+    }
+}
+
 #[test]
 fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
     let mut random = random();
-    let mut config = Config::new(5, 4);
-    config.input_bytes = 2;
     for _ in 0..300 {
-        let mut view = View::opened_by(PeerId(11), Key(1), 1, true);
-        view.found(PeerId(21), Key(2), 1, 2);
-        view.found(PeerId(31), Key(3), 1, 4);
-        let role = Role::Player { seats: 1 };
-        let mut session = Session::new(config.clone(), PeerId(31), Key(3), role, view, 9).unwrap();
+        let mut session = session();
         for step in 0..40_u64 {
             let mut bytes = packet_bytes();
             for _ in 0..random.below(6) {

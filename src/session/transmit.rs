@@ -35,6 +35,8 @@ const INTERVAL_MAX: u64 = 100_000;
 const ROW_ID_BYTES: usize = 4;
 /// Maximum number of packets at a time to a receiver that lacks more than [`HELP_TICKS`] inputs of a span.
 const BURST_MAX: usize = 4;
+/// Largest number of spans in a row, so that it fits in a packet. Further ones follow as the final ticks advance.
+const SPANS_LISTED: usize = 200;
 /// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
@@ -115,7 +117,7 @@ impl Session {
             let (Ok(number), Some(span)) = (u16::try_from(index), self.view.spans.get(index)) else {
                 continue;
             };
-            if span.until > fin {
+            if span.until > fin && row.have.len() < SPANS_LISTED {
                 row.have.push((number, self.log.next(index).max(fin)));
             }
         }
@@ -232,12 +234,13 @@ impl Session {
 
     /// The oldest inputs of a span that the receiver lacks, or those that follow if the last packet had no room for
     /// all, unless the oldest ones have been lost. Inputs of another peer are relayed if the receiver does not hear
-    /// that peer or lacks many of its inputs.
+    /// that peer or lacks many of its inputs. A peer that downloads a state gets none: it has no row yet.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<Run<'_>> {
         let span = self.view.spans.get(index)?;
         let lacks = self.lacks(receiver, index);
         let until = self.log.next(index).min(span.until);
-        if lacks >= until || span.owner == receiver.id {
+        let is_guest = receiver.row.is_none() && self.view.voter(receiver.id).is_none();
+        if lacks >= until || span.owner == receiver.id || is_guest {
             return None;
         }
         let helps = || !self.hears(receiver, span.owner) || lacks.saturating_add(HELP_TICKS) < until;

@@ -90,6 +90,30 @@ fn a_spectator_that_asks_again_is_back() {
     net.assert_all_play();
 }
 
+/// The server has lost its vote, and knows the last player only from the others.
+#[test]
+fn a_dropped_server_whose_contacts_leave_finds_another() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.add(Endpoint::host(config(), identity(0), 0).expect("valid"));
+    (0..2).for_each(|_| _ = net.join(Role::Player { seats: 1 }, 1));
+    net.run(4 * S);
+    net.blocked = vec![(1, 2), (2, 1), (1, 3), (3, 1)];
+    net.run(9 * S);
+    net.blocked.clear();
+    net.run(12 * S);
+    let last = net.join(Role::Player { seats: 1 }, 2);
+    net.run(15 * S);
+    for index in 1..3 {
+        session(&mut net, index).leave();
+        net.run(net.now + 5 * S);
+        assert_eq!(net.status(index), Some(Status::Closed));
+    }
+    net.run(net.now + 5 * S);
+    assert_eq!((net.status(0), net.status(last)), (Some(Status::Dropped), Some(Status::Playing)));
+    let ticks = [0, last].map(|index| net.nodes[index].tick);
+    assert!(ticks[1] > 60 * 20 && ticks[0] + 60 > ticks[1], "{ticks:?}");
+}
+
 #[test]
 fn a_dropped_player_that_asks_again_is_back() {
     let mut net = Net::new(20 * MS, 0, 1000);

@@ -25,6 +25,26 @@ fn ticks_after_the_end_are_taken_back() {
     }
 }
 
+/// The guest does not hear the host from half a second before to some seconds after the decision. The inputs that it
+/// lacks take several packets.
+#[test]
+fn a_peer_that_leaves_answers_until_the_others_have_its_inputs() {
+    let mut sim = players(2, link(MS), |config| {
+        config.input_bytes = 512;
+        (config.delay_min, config.delay_max) = (16, 16);
+    });
+    sim.run(5 * S);
+    sim.links[0][1].cut_until = 9 * S;
+    sim.run(5500 * MS);
+    sim.peers[0].leaves = true;
+    sim.peers[0].session.leave();
+    sim.run(30 * S);
+    assert_eq!((sim.failure.clone(), sim.peers[0].on), (None, false));
+    let guest = &sim.peers[1].session;
+    assert_eq!((guest.status(), guest.view().voters.len()), (Status::Playing, 1));
+    assert!(guest.played() > 60 * 20, "{}", guest.played());
+}
+
 #[test]
 fn a_closed_session_plays_the_final_ticks() {
     let mut sim = players(2, link(30 * MS), |_| ());

@@ -44,7 +44,7 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// A peer that has left keeps answering until all others know that it has left, or for a long time.
+    /// A peer that has left keeps answering until all others know this and have its inputs, or for a long time.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
@@ -55,10 +55,11 @@ impl Sim {
         }
         let ignorant = (0..self.peers.len()).find(|&other| {
             let peer = &self.peers[other];
-            peer.on && view.voter(id(other)).is_some() && peer.session.view().number < view.number
+            let lacks = peer.session.view().number < view.number || peer.session.complete_tick() < view.cut;
+            peer.on && view.voter(id(other)).is_some() && lacks
         });
         if let Some(other) = ignorant {
-            self.fail(format!("L4 {index} is gone before {other} knows that it left"));
+            self.fail(format!("L4 {index} is gone before {other} knows that it left and has its inputs"));
         }
     }
 

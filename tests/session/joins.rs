@@ -49,6 +49,32 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
+/// A packet without inputs is smaller than one with a few.
+#[test]
+fn a_peer_gets_no_inputs_while_it_downloads_a_state() {
+    let mut net = Net::new(20 * MS, 0, 20 << 20);
+    net.host();
+    net.run(10 * S);
+    let guest = net.join(Role::Spectator, 1);
+    net.run(net.now + S);
+    assert!(net.nodes[guest].endpoint.download().is_some_and(|(received, _)| received > 0));
+    let sent = |net: &Net| {
+        let session = net.nodes[0].endpoint.session().expect("valid");
+        session.link(id(guest)).map_or((0, 0), |link| (link.bytes_sent, link.packets_sent))
+    };
+    let first = sent(&net);
+    net.run(net.now + 10 * S);
+    net.assert_all_play();
+    let before = sent(&net);
+    net.run(net.now + 2 * S);
+    let after = sent(&net);
+    let usual = (after.0 - before.0) / (after.1 - before.1);
+    assert!(
+        first.1 > 30 && first.0 / first.1 <= usual,
+        "{first:?} bytes and packets, then {usual} bytes each"
+    );
+}
+
 /// Links have a loss of 0 or 1 %.
 #[test]
 fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {

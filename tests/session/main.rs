@@ -6,6 +6,7 @@
     reason = "the numbers of a test are small"
 )]
 
+mod absences;
 mod departures;
 mod ends;
 #[cfg(feature = "__faults")]

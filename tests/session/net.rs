@@ -88,7 +88,7 @@ impl Net {
             on: true,
             tick: 0,
             state: START,
-            saved: Vec::new(),
+            saved: vec![(0, START)],
             events: Vec::new(),
             joined_at: None,
             desynced: false,
@@ -134,6 +134,7 @@ impl Net {
         while let Some(event) = node.endpoint.next_event() {
             if let JoinEvent::State { tick, bytes } = &event {
                 node.tick = *tick;
+                node.saved.clear();
                 node.state = u64::from_le_bytes(bytes[..8].try_into().expect("valid"));
                 assert!(bytes[8..].iter().all(|&byte| byte == 7), "the bytes that were sent");
                 node.joined_at = Some(now);

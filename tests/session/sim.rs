@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use lockstep2d::session::{Config, Event, Key, PeerId, Role, Session, Tick, View};
+use lockstep2d::session::{Config, Event, Key, PACKET_BYTES_MAX, PeerId, Role, Session, Tick, View};
 
 use super::game::{Game, START, mix};
 
@@ -314,6 +314,9 @@ impl Sim {
     fn send(&mut self, from: usize) {
         while let Some((to, bytes)) = self.peers[from].session.next_packet() {
             let Some(to) = (0..self.peers.len()).find(|&index| id(index) == to) else { continue };
+            if bytes.len() > PACKET_BYTES_MAX {
+                return self.fail(format!("{from} sends a packet of {} bytes", bytes.len()));
+            }
             self.sent += 1;
             self.bytes += bytes.len() as u64;
             self.peers[from].bytes += bytes.len() as u64;

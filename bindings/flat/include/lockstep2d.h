@@ -306,7 +306,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_PAUSED 4
 /* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
-/* Status: removed for good. */
+/* Status: removed by a vote. */
 #define LS2D_MATCH_KICKED 6
 /* Status: announces its departure. */
 #define LS2D_MATCH_LEAVING 7
@@ -1584,7 +1584,7 @@ ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 /* Votes for going on without a missing peer. */
 ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
 
-/* Votes for removing the player with this key permanently. */
+/* Votes for removing the player with this key, while this peer has a vote. */
 ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
 
 /* Sets the number of ticks that may be played with guessed inputs; 0 is lockstep. */

@@ -382,7 +382,7 @@ api! {
         })
     }
 
-    /// Votes for removing the player with this key permanently.
+    /// Votes for removing the player with this key, while this peer has a vote.
     fn ls2d_match_kick(handle: u32, key: u64) {
         with(handle, |game: &mut Match| {
             game.session()?.kick(Key(key));

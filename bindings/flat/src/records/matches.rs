@@ -84,7 +84,7 @@ constants! {
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
     /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
-    /// Status: removed for good.
+    /// Status: removed by a vote.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
     /// Status: announces its departure.
     MATCH_LEAVING = 7, "LS2D_MATCH_LEAVING";
