@@ -158,8 +158,7 @@ impl Body {
         Transform::new(self.position(), self.rotation())
     }
 
-    /// Velocity of the centre of mass in m/s. After a step, it is 0 for a body that
-    /// [`World::move_to`](crate::world::World::move_to) moves.
+    /// Velocity of the centre of mass in m/s. 0 after a step in which `World::move_to` moved the body.
     #[must_use]
     pub fn velocity(&self) -> Vec2<Fx> {
         self.velocity.widen()
@@ -171,8 +170,7 @@ impl Body {
         divide(widen(self.spin), self.mass.gyration)
     }
 
-    /// Velocity in m/s of the body's material at a world position. As [`Body::velocity`], 0 after
-    /// [`World::move_to`](crate::world::World::move_to) and a step.
+    /// Velocity in m/s of the body's material at a world position. Also 0 after a step by `World::move_to`.
     #[must_use]
     pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
@@ -276,8 +274,7 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass and keeps the pose, the motion and the lines of action of forces, except for clamped speeds and
-    /// locked degrees of freedom.
+    /// Changes the mass. Keeps pose, motion and the lines of action of forces, except for clamps and locked axes.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;

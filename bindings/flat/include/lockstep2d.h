@@ -174,6 +174,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MOVER_ON_GROUND 1
 /* `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
+/* `ls2d_mover_state.flags`: inside a shape that is solid from one side, passing on until it is out of it. */
+#define LS2D_MOVER_PASSING 4
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
 /* `ls2d_config.flags`: fast bodies are swept so that they do not pass through shapes. */

@@ -66,6 +66,7 @@ export const C = {
     SWEEP_KINEMATIC: 3,
     MOVER_ON_GROUND: 1,
     MOVER_WEDGED: 2,
+    MOVER_PASSING: 4,
     SLEEPING: 1,
     CONTINUOUS: 2,
     CONTACT_SOFT: 0,

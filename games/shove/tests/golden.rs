@@ -9,9 +9,9 @@ use lockstep2d_shove::Shove;
 
 /// Each scene, and its hash after 3000 ticks with seed 1.
 const GOLDENS: [(&str, &str); 3] = [
-    ("duel", "beb2260c5fc5270b8515672a1a9cb758"),
-    ("match", "b4d013dd5baafe9507b6310257b4c461"),
-    ("guests", "665b1dfb3aca1baf3d47209bc5a59eb4"),
+    ("duel", "34b5bf2583a5f349eee546ad3b74ed24"),
+    ("match", "a20792f3a0bdbfbb42c74b26c7d25fd7"),
+    ("guests", "c60cd509c757a894e5143afd5424f0a5"),
 ];
 
 fn replay(scene: &str) -> PathBuf {
