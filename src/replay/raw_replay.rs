@@ -33,6 +33,9 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
+    /// Number of ticks that have been played within the limits. Their work is not limited again, because the first tick
+    /// after a loaded state costs more.
+    admitted: u64,
     /// The verdict that [`RawReplay::step`] has returned.
     failed: Option<Verdict>,
 }
@@ -63,11 +66,10 @@ impl<'a, G: Game> RawReplay<'a, G> {
         let (mut game, work) = start::<G>(inputs.reader().header(), limits)?;
         check_bodies(&mut game, limits)?;
         let (limits, position) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
-        let length = ending.ticks;
-        Ok((
-            RawReplay { game, limits, position, encoded: None, inputs: Vec::new(), length, failed: None },
-            ending,
-        ))
+        let (length, inputs) = (ending.ticks, Vec::new());
+        let raw =
+            RawReplay { game, limits, position, encoded: None, inputs, length, admitted: 0, failed: None };
+        Ok((raw, ending))
     }
 
     /// The game at the current tick. Its state is wrong once a limit of work has been exceeded.
@@ -153,9 +155,14 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// Plays the tick whose inputs were read, by calling `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
-        let RawReplay { game, inputs, limits, position, .. } = self;
+        let RawReplay { game, inputs, limits, position, admitted, .. } = self;
+        let unlimited = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..limits.clone() };
+        let limits = if position.tick < *admitted { &unlimited } else { &*limits };
         let done = play_within(game, inputs, limits, &mut position.work, step)?;
-        self.position.tick += 1;
+        position.tick += 1;
+        if position.tick == *admitted + 1 {
+            *admitted += 1;
+        }
         check_bodies(&mut self.game, &self.limits)?;
         Ok(done)
     }

@@ -18,6 +18,7 @@ const CONTACTS_MAX: usize = 128;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PendingContact {
+    id: PeerId,
     pub(super) address: Address,
     pub(super) nonce: u64,
     pub(super) cookie: u64,
@@ -63,20 +64,22 @@ impl Contacts {
             return None;
         }
         if self.asked.is_none_or(|asked| now >= asked.until) {
-            let (_, address) = *self.list.get(self.turn.checked_rem(self.list.len())?)?;
+            let (id, address) = *self.list.get(self.turn.checked_rem(self.list.len())?)?;
             self.turn = self.turn.wrapping_add(1);
             let until = now.saturating_add(ASK_TIME);
             self.asked =
-                Some(PendingContact { address, nonce: nonce(&address), cookie: 0, next_at: now, until });
+                Some(PendingContact { id, address, nonce: nonce(&address), cookie: 0, next_at: now, until });
         }
         let asked = self.asked.as_mut().filter(|asked| now >= asked.next_at)?;
         asked.next_at = now.saturating_add(HELLO_INTERVAL);
         Some(*asked)
     }
 
-    /// Returns whether the challenge answers this peer's hello, which confirms the contact's address.
-    pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64) -> bool {
-        let Some(asked) = self.asked.as_mut().filter(|asked| asked.nonce == nonce) else { return false };
+    /// Returns whether the challenge answers this peer's hello, which confirms the contact's address. A new process at
+    /// that address may be in another match.
+    pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64, sender: PeerId) -> bool {
+        let is_answer = |asked: &&mut PendingContact| asked.nonce == nonce && asked.id == sender;
+        let Some(asked) = self.asked.as_mut().filter(is_answer) else { return false };
         if asked.cookie != cookie {
             (asked.cookie, asked.next_at) = (cookie, 0);
         }

@@ -50,7 +50,7 @@ impl Endpoint {
             }
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
-                    if self.contacts.take_challenge(nonce, cookie) {
+                    if self.contacts.take_challenge(nonce, cookie, sender) {
                         // Packets go to the contact even before it admits this peer.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);

@@ -139,7 +139,7 @@ pub enum Event {
         /// The tick.
         tick: Tick,
     },
-    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks behind, so that others may have
-    /// dropped inputs that this peer lacks. This peer has to join again.
+    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks or 1024 changes of the view behind, so
+    /// that others may have dropped what this peer lacks. This peer has to join again.
     TooFarBehind,
 }

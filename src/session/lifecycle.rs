@@ -163,10 +163,10 @@ impl Session {
         }
     }
 
-    /// Whether a peer without a vote has lost contact with the majority before the end.
+    /// Whether a peer without a vote that was not kicked has lost contact with the majority before the end.
     pub(super) fn needs_contact(&self) -> bool {
         let is_over = matches!(self.status(), Status::Left | Status::Finished { .. } | Status::Closed);
-        !is_over && self.view.voter(self.me).is_none() && !self.is_connected()
+        !is_over && !self.lifecycle.kicked && self.view.voter(self.me).is_none() && !self.is_connected()
     }
 
     /// Whether a peer that has finished or left may stop answering. `known` is whether no other peer needs its answers.
@@ -189,9 +189,7 @@ impl Session {
             && self.clock.active
                 > self.progress.moved_at.saturating_add((WAITING_TICKS * tick).max(self.config.timing.heard));
         let peer = self.waiting_for().filter(|&peer| still && peer != self.me);
-        if peer.is_some() {
-            self.tell_too_far_behind();
-        }
+        self.tell_too_far_behind(peer.is_some());
         if peer == self.lifecycle.waiting_for {
             return;
         }
@@ -206,12 +204,12 @@ impl Session {
     }
 
     /// After an outage the rows of the others, and with them the lag, arrive when the stall has been reported already.
-    fn tell_too_far_behind(&mut self) {
+    fn tell_too_far_behind(&mut self, waits: bool) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
         let views = self.peers.list.iter().filter_map(|remote| remote.row.as_ref()).map(|row| row.view).max();
         let missed = views.unwrap_or(0).saturating_sub(self.view.number);
-        let is_too_far = behind > self.config.log_ticks || missed > u32::from(CHANGES_KEPT);
+        let is_too_far = (waits && behind > self.config.log_ticks) || missed > u32::from(CHANGES_KEPT);
         if is_too_far && !self.lifecycle.too_far_behind {
             self.lifecycle.too_far_behind = true;
             self.events.push_back(Event::TooFarBehind);

@@ -5,6 +5,7 @@ use super::event::Event;
 use super::id::{PeerId, Tick};
 use super::input_log::Added;
 use super::packet::{self, Packet};
+use super::peers::within;
 use super::row::{Removal, Row};
 use super::state::Session;
 
@@ -62,6 +63,10 @@ impl Session {
         if remote.row.as_ref().is_some_and(|known| known.version >= row.version) {
             return;
         }
+        if !within(remote.fresh, self.config.timing.heard, active) {
+            // The peer is back.
+            self.wants.removals.retain(|removal| *removal != Removal::Without(id));
+        }
         remote.fresh = Some(active);
         remote.end_probe(&row, self.config.timing.heard, active);
         if row.connected {
@@ -105,11 +110,7 @@ impl Session {
         }
         match self.log.add(index, start, inputs) {
             Added::Nothing => {}
-            Added::From(tick) => {
-                self.play.note_change(tick);
-                // The peer is back, or its last inputs have arrived late.
-                self.wants.removals.retain(|removal| *removal != Removal::Without(owner));
-            }
+            Added::From(tick) => self.play.note_change(tick),
             Added::Conflict(tick) => {
                 let Some(remote) = self.peers.find_mut(owner).filter(|remote| !remote.faulty) else { return };
                 remote.faulty = true;

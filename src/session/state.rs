@@ -262,7 +262,7 @@ impl Session {
     }
 
     /// Votes to continue without a missing peer, which may return. The vote of the [tie-holder](View::tie_holder) is
-    /// sufficient. The vote ends when further inputs of the peer arrive.
+    /// sufficient. The vote ends when the peer is heard again.
     pub fn go_on_without(&mut self, peer: PeerId) {
         if self.view.voter(peer).is_some() {
             self.remove(Removal::Without(peer));

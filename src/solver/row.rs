@@ -8,7 +8,7 @@
 //! e = c / k                                            lever ratio
 //! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that no impulse moves
 //! D  = aA (1 + eA^2) + aB (1 + eB^2)                   1 or more
-//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2 (in coupled rows 4.1 and 1.1)
+//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2 (in coupled rows 4.1 and 2)
 //!
 //! vn = n.(vB - vA) + eB uB - eA uA
 //! d  = -massScale (vn + bias) - impulseScale L

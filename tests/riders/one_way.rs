@@ -1,6 +1,6 @@
 //! Ground that is solid from one side and comes up, turns, or bends.
 
-use lockstep2d::body::{BodyDef, BodyId, Chain, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
@@ -128,6 +128,29 @@ fn characters_turn_round_inside_platforms() {
             }
             let lands = highest > 0;
             assert_eq!(state.is_on_ground(), lands, "{name} at {speed} m/s: highest at {highest}, {state:?}");
+        }
+    }
+}
+
+/// A mask that leaves the platform out for a few ticks lets the character drop through it.
+#[test]
+fn characters_drop_through_platforms() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        for masked in [4, 10, 20] {
+            let mut world = world(60);
+            let dropped =
+                platform.iter().map(|part| part.filter(Filter { category: 2, ..Filter::default() }));
+            world.spawn(&BodyDef::fixed(), &dropped.collect::<Vec<_>>()).expect("valid");
+            let mover = Mover::new(shape).expect("valid");
+            let mut state = MoverState::at(at(fx!(0.1), fx!(0.7001)));
+            for number in 0..60 {
+                world.step();
+                let mask = if number < masked { !2 } else { u64::MAX };
+                let velocity = state.velocity - Vec2::new(fx!(0), fall(60));
+                let filter = QueryFilter { mask, ..QueryFilter::default() };
+                state = world.move_character(&mover, &MoverState { velocity, ..state }, filter).state;
+            }
+            assert!(feet(&state) < fx!(-2), "{name}, masked for {masked} ticks: {state:?}");
         }
     }
 }

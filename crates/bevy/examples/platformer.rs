@@ -138,6 +138,9 @@ impl Game for Platformer {
     fn world(&self) -> Option<&Physics> {
         Some(&self.world)
     }
+    fn world_mut(&mut self) -> Option<&mut Physics> {
+        Some(&mut self.world)
+    }
 }
 
 fn press(keys: Res<ButtonInput<KeyCode>>, mut inputs: ResMut<Inputs<Platformer>>) {

@@ -74,6 +74,9 @@ impl Game for Versus {
     fn world(&self) -> Option<&Physics> {
         Some(&self.world)
     }
+    fn world_mut(&mut self) -> Option<&mut Physics> {
+        Some(&mut self.world)
+    }
 }
 
 /// The input of a bot.

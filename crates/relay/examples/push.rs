@@ -103,6 +103,9 @@ impl Game for Push {
     fn work(&self, _: &[u8]) -> u64 {
         self.world.work(0, 0)
     }
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
 }
 
 #[derive(Debug, Parser)]

@@ -223,16 +223,17 @@ impl BroadPhase {
 
     /// Largest number of pairs of boxes that [`BroadPhase::pairs`] compares.
     pub(crate) fn comparisons(&self, moved: Moved<'_>) -> u64 {
-        let (moving, fixed) = match &self.structure {
-            Structure::Trees(trees) => trees.lens(),
-            Structure::SweepAndPrune(sweep) => (sweep.boxes().len(), 0),
-            Structure::BruteForce(boxes) => (boxes.len(), 0),
-        };
         // Below 2^21 boxes, so that no product overflows.
-        let [moving, fixed] = [moving, fixed].map(|len| len as u64);
+        let all = |boxes: &BoxList| (boxes.len() as u64).pow(2) / 2;
+        let trees = match &self.structure {
+            Structure::Trees(trees) => trees,
+            Structure::SweepAndPrune(sweep) => return all(sweep.boxes()),
+            Structure::BruteForce(boxes) => return all(boxes),
+        };
+        let (moving, fixed) = trees.lens();
         match moved {
-            Moved::Slots(slots) if (slots.len() as u64) < moving / 2 => slots.len() as u64 * (moving + fixed),
-            _ => moving * (moving / 2 + fixed),
+            Moved::Slots(slots) if slots.len() < moving / 2 => slots.len() as u64 * (moving + fixed) as u64,
+            _ => moving as u64 * (moving / 2 + fixed) as u64,
         }
     }
 

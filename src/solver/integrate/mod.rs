@@ -167,7 +167,8 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// Shortens a velocity change so that damping leaves 512 m/s of it, which is more than any speed limit.
+/// Shortens a velocity change so that damping leaves 512 m/s of it. No speed limit is larger, but a body that such a
+/// force turns back loses speed.
 #[cold]
 fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
     let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));

@@ -52,17 +52,19 @@ impl ShapeCache {
         self.poses.motion()
     }
 
-    /// See [`BroadPhase::pairs`]. Finds at most as many pairs as the budget of work units allows to solve.
+    /// See [`BroadPhase::pairs`]. Finds at most as many pairs as the budget of work units allows to solve, in addition
+    /// to `known` pairs.
     pub(crate) fn find_pairs(
         &mut self,
         moved: Moved<'_>,
         accept: impl Fn(Pair) -> bool,
         limit: usize,
         pairs: &mut Vec<Pair>,
+        known: usize,
         meter: &mut WorkMeter,
     ) -> bool {
         pairs.clear();
-        let affordable = meter.spend_search(self.broad_phase.comparisons(moved));
+        let affordable = meter.spend_search(self.broad_phase.comparisons(moved)).saturating_add(known);
         if meter.is_exhausted() {
             return false;
         }

@@ -73,7 +73,12 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     scratch.shapes.broad_phase().each_overlap_of(false, state.shapes.at(shape).fat, |other| {
         visited += 1;
         // A resting kinematic body has to be active only for sensor events of two bodies that do not move.
-        let is_sensed = || !is_dynamic && state.sensor_of((shape, other)).is_some();
+        let is_sensed = || {
+            let pair = (shape.min(other), shape.max(other));
+            !is_dynamic
+                && state.sensor_of(pair).is_some()
+                && scratch.pairs.non_colliding.may_touch(state, pair)
+        };
         if state.body_of(other).is_dynamic() || is_sensed() {
             neighbours.push(state.shapes.at(other).body().slot());
         }

@@ -348,12 +348,13 @@ impl<'a> Walk<'a> {
         separation < -(self.world.state.config.speculative_distance / 4)
     }
 
-    /// Whether the character overlaps a shape that it is passing through.
+    /// Whether the character overlaps a shape that it is passing through, or that the mask leaves out for a while.
     pub(super) fn is_passing(&self) -> bool {
         let (posed, origin) = (self.probe.posed(), self.probe.position());
         let own = SupportShape::of(&posed, origin);
         let mut passing = false;
-        self.world.each_overlapping(posed.bounds, self.filter, |id, other| {
+        let filter = QueryFilter { mask: u64::MAX, ..self.filter };
+        self.world.each_overlapping(posed.bounds, filter, |id, other| {
             let is_one_sided = || self.world.shape(id).is_some_and(is_solid_from_one_side);
             passing = passing
                 || is_one_sided() && self.is_deep(distance(&SupportShape::of(other, origin), &own).distance);

@@ -67,8 +67,9 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
         let (a, b) = state.bodies_of(pair);
         (a.is_active() || b.is_active()) && non_colliding.may_touch(state, pair)
     };
-    let left_out = shapes.find_pairs(moved, accept, limit, pairs, meter);
     let activated = fresh.len();
+    let known = state.contacts.len() + activated;
+    let left_out = shapes.find_pairs(moved, accept, limit, pairs, known, meter);
     for &pair in pairs.iter() {
         if fresh[..activated].binary_search_by_key(&pair, |contact| contact.shapes).is_err() {
             fresh.push(Contact::new(pair));

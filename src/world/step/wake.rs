@@ -61,5 +61,6 @@ fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize
             && (state.sensor_of(pair).is_none() || state.has_area(pair))
             && cache.non_colliding.may_touch(state, pair)
     };
-    shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs, meter);
+    let known = state.contacts.len() + state.sleeping_contacts.len();
+    shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs, known, meter);
 }
