@@ -10,11 +10,12 @@ use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, S
 use crate::world::state::State;
 
 pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
+    // Also without changes: the world may have been restored.
+    scratch.pairs.non_colliding.refresh(state);
     // Pairs that were left out at the limit are added as soon as there is room.
     if !(scratch.pairs.changes.any() || state.pairs_left_out) {
         return;
     }
-    scratch.pairs.non_colliding.refresh(state);
     activate_sleeping_contacts(state, scratch);
     let left_out = find_new(state, scratch);
     merge_contacts(state, scratch);
