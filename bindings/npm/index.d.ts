@@ -20,8 +20,9 @@ export interface Vec2 {
     y: Fx;
 }
 declare const handleBrand: unique symbol;
-/** Handle of a body, never used again in its world. The first bodies have the handles 0, 1, 2 and so on. Convert plain
- * numbers, as in `poses()`, by `as BodyId`. */
+/** Handle of a body, valid until the body is despawned, or a state from before its spawn is restored: after a rollback
+ * another body may have it, so tables of sprites should also compare `userData`. The first bodies have the handles 0,
+ * 1, 2 and so on. Convert plain numbers, as in `poses()`, by `as BodyId`. */
 export type BodyId = number & { readonly [handleBrand]: "body" };
 /** Handle of a shape. */
 export type ShapeId = number & { readonly [handleBrand]: "shape" };
@@ -529,7 +530,8 @@ declare class Edits extends Handle {
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
     /** Moves the origin of a body at once to a position in metres, with an angle (0 by default). */
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Moves a kinematic body to a pose during the next tick. Throws `WRONG_KIND` for other bodies. */
+    /** Moves a kinematic body to a pose during the next tick. Its velocity is then 0. Throws `WRONG_KIND` for other
+     * bodies, and `SPEED` if the pose is out of reach in a tick at the world's `speedMax`: use `setTransform` then. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
     /** Replaces the settings of a body, and wakes it. Omitted settings have their defaults. Other properties in
      * `World.body` are not accepted here. */
@@ -859,7 +861,8 @@ export interface Moved {
     met: MoverPlane[];
 }
 /** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and is carried by moving
- * ground. The game adds gravity to the velocity. */
+ * ground. The game adds gravity to the velocity. Call it after `step`. Sensors, areas and events do not notice a
+ * character: use `overlapShape` with `sensors: true`, or let a kinematic body follow it that the filter leaves out. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** Encodes the state of a character, for saves and hashes. */
 export function encodeMoverState(state: MoverState): Uint8Array;
@@ -1053,7 +1056,7 @@ export class ReplayDriver<Saved = unknown> {
 }
 
 /** Parameters of a match and of a peer. `seats`, `inputBytes`, `tickRate`, `patience` and `matchTag` have to be equal
- * for all peers. */
+ * for all peers. `checkInterval` should be equal, because peers compare states only in ticks at which both check. */
 export interface MatchOptions {
     /** Number of seats of the match, 1 to 64. */
     seats: number;
@@ -1216,9 +1219,10 @@ export class Match extends Handle {
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
-     * majority has decided on the end, other peers can get seats. */
+     * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
+     * back: decide by a state of a confirmed tick (`ticks().confirmed`). */
     endAt(ticks: number): void;
-    /** Requests a pause, or withdraws the request. */
+    /** Tells the other peers that this one requests a pause, or no longer does. The match plays on. */
     pause(paused: boolean): void;
     /** Votes for going on without a missing peer. */
     goOnWithout(peer: number): void;

@@ -135,11 +135,18 @@ function love.draw()
     graphics.print(text:format(statuses[driver:status()], played, played - confirmed), 10, 10)
 end
 
+local leaving = false
+
+-- The window closes when the others have the inputs of this player, or at once when it is closed again.
 function love.quit()
+    if leaving then
+        return false
+    end
     local status = driver:status()
     -- A game that still requests to join has no match to leave.
     if status ~= ls.MATCH_CLOSED and status ~= ls.MATCH_CONNECTING then
         ls.match_leave(driver.match)
-        driver:update(love.timer.getTime(), read_keys)
+        leaving = true
     end
+    return leaving
 end

@@ -7,6 +7,8 @@ const KEYS = { KeyA: 1, KeyD: 2, KeyW: 4, ArrowLeft: 1, ArrowRight: 2, ArrowUp: 
 const pressed = new Set();
 addEventListener("keydown", ({ code }) => pressed.add(code));
 addEventListener("keyup", ({ code }) => pressed.delete(code));
+// Keys that are released in another window are not reported.
+addEventListener("blur", () => pressed.clear());
 const pad = () => [...pressed].reduce((bits, code) => bits | (KEYS[code] ?? 0), 0);
 
 let player;
@@ -33,11 +35,11 @@ function frame() {
     element("save").disabled = player.recording.broken || player.recording.ticks === 0;
     const others = player.relay.others.length;
     const broken = player.relay.isClosed ? "this player has entered the room again, in another tab" : "no connection to the relay";
-    const line = player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : broken;
+    const line = player.isOver ? "this player has left" : player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : broken;
     element("text").textContent = `${status}, seat ${seats.join(" ")}, tick ${tick}, final ${final}\n${line}\n${player.game.hash()}` +
         (desyncs ? "\nthe states differ" : "") +
         (status === "paused" ? "\nwaits for the other player; if the one who opened the match has reloaded the page, leave and open another match" : "");
-    status === "closed" || requestAnimationFrame(frame);
+    player.isOver || requestAnimationFrame(frame);
 }
 
 function save() {

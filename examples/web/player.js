@@ -16,6 +16,7 @@ function identity(code) {
 
 export class Player {
     desyncs = 0;
+    isOver = false;
     #input;
 
     /** Opens a match if the room is empty, otherwise joins. `input` returns the bits of the pad. */
@@ -60,6 +61,7 @@ export class Player {
     }
 
     close() {
+        this.isOver = true;
         clearInterval(this.timer);
         this.direct.close();
         this.relay.close();

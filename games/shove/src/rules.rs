@@ -81,7 +81,7 @@ impl Rules {
         self.seats.iter().map(|seat| u8::from(which(seat))).sum()
     }
 
-    fn is_practice(&self) -> bool {
+    pub(crate) fn is_practice(&self) -> bool {
         self.starters < 2
     }
 

@@ -88,6 +88,12 @@ impl Shove {
         self.rules.round
     }
 
+    /// Whether the round does not count, because it began with fewer than two players.
+    #[must_use]
+    pub fn is_practice(&self) -> bool {
+        self.rules.is_practice()
+    }
+
     /// Current phase.
     #[must_use]
     pub const fn phase(&self) -> Phase {

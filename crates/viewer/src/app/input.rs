@@ -49,13 +49,18 @@ fn is_click(from: [f32; 2], to: [f32; 2]) -> bool {
 impl App {
     /// Handles an input event. The source receives it first, so that a game can consume its players' keys.
     pub fn handle(&mut self, event: Event) {
+        match event {
+            Event::Pressed(Key::Shift) => self.pointer.shift = true,
+            Event::Released(Key::Shift) => self.pointer.shift = false,
+            _ => {}
+        }
         if self.source.as_mut().is_some_and(|source| source.handle(&event)) {
             return;
         }
         match event {
             Event::Resized(size) => self.size = size,
             Event::Pressed(key) => self.press(key),
-            Event::Released(key) => self.pointer.shift &= key != Key::Shift,
+            Event::Released(_) => {}
             Event::Moved(at) => self.move_to(at),
             Event::Down(button) => self.down(button),
             Event::Up(button) => self.up(button),
@@ -77,7 +82,6 @@ impl App {
             return;
         }
         match key {
-            Key::Shift => self.pointer.shift = true,
             Key::Character('h') => self.help = !self.help,
             Key::Character('r') => self.view.reset(),
             Key::Character('+' | '=') => self.view.zoom(1.0, self.size.map(|side| side / 2.0)),

@@ -9,7 +9,7 @@ use crate::source::{Source, SourceError};
 /// Range of the playback speed. A speed is given as an exponent of two.
 const SPEEDS: std::ops::RangeInclusive<i32> = -5..=5;
 
-/// Cost of the ticks that a frame may play, in the unit of [`slice_of`].
+/// Largest cost of the ticks of a frame. [`slice_of`] defines the cost.
 const SLICE: u64 = 60_000;
 
 #[derive(Debug)]
@@ -75,6 +75,8 @@ impl Player {
 
     fn try_advance(&mut self, time: Duration, source: &mut dyn Source) -> Result<(), SourceError> {
         if source.advance(time)? {
+            // Such a source cannot be paused, and has no speed.
+            *self = Player::default();
             return Ok(());
         }
         let slice = slice_of(source.world());

@@ -16,7 +16,7 @@ use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
 /// Longest time that closing waits until the match is left.
-const LEAVE_TIME: Duration = Duration::from_millis(500);
+const LEAVE_TIME: Duration = Duration::from_secs(1);
 /// Interval of updates while closing waits.
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
@@ -230,10 +230,9 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
     fn close(&mut self) {
         self.peer.leave();
         for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {
-            let status = self.peer.status();
-            let has_left =
-                matches!(status, None | Some(Status::Left | Status::Finished { .. } | Status::Closed));
-            if has_left || self.ended.is_some() || self.advance(LEAVE_STEP).is_err() {
+            // A peer that has left still has to tell the others.
+            let is_closed = matches!(self.peer.status(), None | Some(Status::Closed));
+            if is_closed || self.ended.is_some() || self.advance(LEAVE_STEP).is_err() {
                 break;
             }
             std::thread::sleep(LEAVE_STEP);

@@ -44,10 +44,7 @@ pub(crate) fn headline(game: &Shove) -> String {
         Phase::Fight => format!("{seconds} s left"),
         Phase::Pause => "next round soon".into(),
     };
-    match game.round() {
-        0 => "practice".into(),
-        round => format!("round {round} · {phase}"),
-    }
+    if game.is_practice() { "practice".into() } else { format!("round {} · {phase}", game.round()) }
 }
 
 /// Draws the original edge of the platform and the current one.

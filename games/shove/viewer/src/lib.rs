@@ -39,12 +39,11 @@ pub fn bot(seed: u64, seat: usize) -> lockstep2d_viewer::Bot<Shove> {
     Box::new(move |game| bot.pad(game))
 }
 
-/// Keys of one person: W, A, S and D, and Shift or F to dash.
+/// Keys of one person: W, A, S and D, and F to dash.
 #[must_use]
 pub fn left() -> Controls<Pad> {
     let keys = [('w', Pad::UP), ('a', Pad::LEFT), ('s', Pad::DOWN), ('d', Pad::RIGHT), ('f', Pad::DASH)];
-    let controls = keys.into_iter().fold(Controls::new(), |controls, (key, pad)| button(controls, key, pad));
-    button(controls, Key::Shift, Pad::DASH)
+    keys.into_iter().fold(Controls::new(), |controls, (key, pad)| button(controls, key, pad))
 }
 
 /// Keys of the other person: the arrow keys, and Enter or Control to dash.

@@ -61,7 +61,7 @@ const KEYS: [(usize, Key, Pad); 11] = [
     (0, Key::Character('a'), Pad::LEFT),
     (0, Key::Character('s'), Pad::DOWN),
     (0, Key::Character('d'), Pad::RIGHT),
-    (0, Key::Shift, Pad::DASH),
+    (0, Key::Character('f'), Pad::DASH),
     (1, Key::Up, Pad::UP),
     (1, Key::Left, Pad::LEFT),
     (1, Key::Down, Pad::DOWN),
