@@ -116,7 +116,7 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One combination of depth and prediction at each tick that [`CheckOptions::every`] selects, in turn. For depths of
+    /// Each tick that [`CheckOptions::every`] selects tests the next combination of depth and prediction. For depths of
     /// 1 to 8 ticks, this costs about eight steps per tick.
     #[default]
     InTurn,

@@ -12,7 +12,7 @@ use crate::world::{ContactView, SolverColour, World};
 /// shorter ones are hard to tell from points.
 const VELOCITY_TIME: Fx = fx!(0.1);
 
-/// Drawn length in metres of the force that accelerates by [`FORCE_UNIT`]: shorter than a typical body.
+/// Drawn length in metres of a force that accelerates its body by [`FORCE_UNIT`]. Typical bodies are larger.
 const FORCE_LENGTH: Fx = fx!(0.2);
 /// Unit of drawn accelerations in m/s².
 const FORCE_UNIT: i64 = 10;

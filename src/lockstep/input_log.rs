@@ -187,7 +187,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         Ok(self.extend(new))
     }
 
-    /// Logs encoded inputs of the next tick, and returns them.
+    /// Logs the encoded inputs of the next tick, and returns them decoded.
     ///
     /// # Errors
     /// [`InputError::Count`] unless there is one input per player. The log is unchanged.

@@ -200,7 +200,7 @@ impl Config {
         if usize::from(self.seats) >= SEATS_MAX { u64::MAX } else { (1 << self.seats) - 1 }
     }
 
-    /// Whether a deliberate mistake is active.
+    /// Whether an injected fault is active.
     #[cfg(not(feature = "__faults"))]
     #[expect(clippy::unused_self, reason = "the other version needs it")]
     pub(super) const fn has(&self, _: Fault) -> bool {

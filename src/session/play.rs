@@ -153,7 +153,7 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of one of this peer's spans whose input must not be issued yet. The inputs of the first `delay + 1`
+    /// First tick of a span of this peer for which no input may be issued yet. The inputs of the first `delay + 1`
     /// ticks are issued at once, one in each call of `advance`, so that no peer waits for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {

@@ -6,7 +6,7 @@ mod forged_snapshots;
 use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::replay::{Limits, Recording, verify};
+use lockstep2d::replay::{Limits, Recording, play_within, verify};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{BodyPose, Command, Config, World};
 use lockstep2d::{codec, fx};
@@ -68,15 +68,21 @@ fn bodies_without_shapes_are_work() {
 }
 
 #[test]
-fn many_shapes_at_one_point_are_work_before_their_first_tick() {
+fn many_shapes_at_one_point_are_work_in_their_first_tick() {
     let ball = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] };
     let setup = SandboxSetup { config: Config::default(), commands: vec![spawn; 400] };
-    let mut game = Sandbox::new(&setup).unwrap();
-    let announced = game.work(&[Vec::new()]);
-    game.step(&[Vec::new()]);
-    let pairs = game.world().pair_count() as u64;
-    assert!(announced >= pairs, "{announced} work units for {pairs} pairs");
+    let play = |tick_work| {
+        let (mut game, mut spent) = (Sandbox::new(&setup).unwrap(), 0);
+        let limits = Limits { tick_work, ..Limits::default() };
+        let played = play_within(&mut game, &[Vec::new()], &limits, &mut spent, Sandbox::step);
+        (played.is_ok(), spent, game.world().pair_count() as u64)
+    };
+    let (_, spent, pairs) = play(u64::MAX);
+    assert!(pairs == 79_800 && spent >= pairs, "{spent} work units for {pairs} pairs");
+    // With a smaller budget the pairs are not even listed.
+    let (is_within, _, pairs) = play(100_000);
+    assert!(!is_within && pairs <= 100_000 / 12, "{pairs} pairs");
 }
 
 #[test]

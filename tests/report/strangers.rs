@@ -16,7 +16,7 @@ thread_local! {
     static LOADS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Only the world is part of the state.
+/// The setup, which is not part of the state.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Rules {
     players: u32,
@@ -126,11 +126,12 @@ fn search(rules: Rules, inputs_at: impl Fn(u64) -> [u16; 2]) -> (u64, u64) {
     (LOADS.get(), raw.work() - rules.work)
 }
 
-/// The search may take as long as 15 ticks, and a load is charged as half a tick.
+/// The search may take as long as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to three
+/// times as much as others, because it searches all pairs again.
 #[test]
 fn work_within_a_step_is_charged_to_the_search() {
     let (loads, work) = search(PLAIN, |_| [0, 0]);
-    assert!((10..40).contains(&loads), "{loads} loads for {work} units");
+    assert!((5..40).contains(&loads), "{loads} loads for {work} units");
     // The world counts the work of explosions only within the step.
     let (loads, with_explosions) = search(PLAIN, |tick| if tick == 10 { [5000, 0] } else { [0, 0] });
     assert!(with_explosions > 10 * work, "{with_explosions} units instead of {work}");

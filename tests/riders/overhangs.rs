@@ -71,7 +71,7 @@ fn block(world: &mut World, centre: Vec2<Fx>, half: Vec2<Fx>) {
     world.spawn(&BodyDef::fixed().position(centre), &[shape]).expect("valid");
 }
 
-/// What is behind the character, but not behind its position, does not hinder a step.
+/// A wall between a character's position and its geometry, which is to the side, does not hinder a step.
 #[test]
 fn a_character_beside_its_position_climbs_steps() {
     let mut world = world(60);

@@ -26,7 +26,7 @@ pub(super) const LIMITS: Limits = Limits {
     total_work: 4000,
 };
 
-/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy.
+/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy of the one with bodies.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
     let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);

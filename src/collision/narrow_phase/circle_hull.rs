@@ -42,7 +42,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         return Manifold::NONE;
     }
     let separation = Step::from_bits(saturate(distance - radii));
-    // The circle's surface is `radius` before its centre. The midpoint of the gap is half the separation further.
+    // From the centre against the normal: `radius` to the surface, then half the separation to the middle of the gap.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })

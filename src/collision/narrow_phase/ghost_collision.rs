@@ -33,8 +33,7 @@ pub(crate) struct GhostFilter {
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// A face with a larger cosine to the contact normal is the contact's own: the shape touches that face and does not
-    /// pass by it.
+    /// Faces with a larger cosine to the contact normal are not tested: the shapes touch there and do not pass by.
     own: Unit,
 }
 

@@ -48,13 +48,11 @@ impl Link {
     /// may be in the open, on the left of the chain.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, sides, .. } = *self;
-        let is_on_right = sides == Sides::Both || self.has_on_right(place);
-        if sides == Sides::Both || !is_on_right || right_of(a, b, place) {
-            return is_on_right;
-        }
         let is_before = (place - a).dot(a.towards(b)) < 0;
         let (far_end, near_end) = if is_before { (before, a) } else { (after, b) };
-        far_end.is_some_and(|far_end| (place - far_end).dot(far_end.towards(near_end)) >= 0)
+        let is_short_of = |far_end: Vec2<Fx>| (place - far_end).dot(far_end.towards(near_end)) >= 0;
+        sides == Sides::Both
+            || self.has_on_right(place) && (right_of(a, b, place) || far_end.is_some_and(is_short_of))
     }
 
     /// Whether a point is on the right of the chain, judged by this link and its neighbours.

@@ -31,7 +31,7 @@ const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
 /// Largest factor between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
 
-/// Base-2 logarithm of the bound of speeds and impulses, 64 m/s, and of displacements, 2 m, in units of their formats.
+/// Unchecked speeds and impulses (64 m/s) and displacements (2 m) are below 2 to this power in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
 /// Base-2 logarithm of the bound of impulse changes, 4 m/s, and of separations, 1/8 m.

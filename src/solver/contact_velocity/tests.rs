@@ -62,7 +62,7 @@ fn what_contacts_have_changed_is_changed_again() {
                 .map(|index| PushedBody { index: u32::try_from(index).expect("few"), shared: index > 10 }),
         );
         let by_joints = |numbers: &[[Speed; 3]]| -> Vec<[Speed; 3]> {
-            // Only contacts change the bodies of groups that are not shared.
+            // Joints change only the bodies that are marked as shared.
             numbers.iter().enumerate().map(|(i, &by)| if i > 10 { by } else { [Speed::ZERO; 3] }).collect()
         };
         let was_known = with_context(machine, &mut bodies, &mut faults, |context| {

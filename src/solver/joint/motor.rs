@@ -104,7 +104,7 @@ pub struct Pull {
 }
 
 impl Motor {
-    /// A joint without any part.
+    /// A joint without motors and springs.
     #[must_use]
     pub const fn new() -> Self {
         Motor { linear: None, angular: None, linear_spring: None, angular_spring: None }

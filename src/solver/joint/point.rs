@@ -10,7 +10,7 @@ use super::pose::JointPose;
 use crate::fx;
 use crate::math::{Fx, Speed, Unit, Vec2};
 
-/// Largest push in m/s of a spring of limited force. It is so large that velocities hardly change its direction.
+/// Largest push in m/s of a spring of limited force. It is so large that velocities hardly turn the impulse.
 const PUSH_MAX: Fx = fx!(1048576);
 
 #[derive(Clone, Copy, Debug)]

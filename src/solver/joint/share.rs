@@ -147,8 +147,7 @@ impl OwnJoints<'_> {
     }
 }
 
-/// Coefficients for averaging a lever ratio over a rotation `t`: the ratio changes by `half t` of its length across
-/// itself, and shrinks by `sixth t^2`.
+/// Coefficients of a lever ratio `e` averaged over a rotation `t`: `e + half t (-e_y, e_x) - sixth t^2 e`.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,

@@ -40,7 +40,7 @@ fn an_update_brings_the_anchors_to_rest() {
     assert!(worst <= 128, "{worst} units left");
 }
 
-/// From rest, an impulse changes momentum by no more than its bound.
+/// The impulse on bodies that start at rest stays within its bound.
 #[test]
 fn an_impulse_of_limited_length_is_no_longer() {
     let mut rng = Rng::new(9);

@@ -90,7 +90,7 @@ pub(crate) struct ShapeMotion {
     shift: Vec2<Travel>,
     /// Upper bound in metres of the movement of points by the body's rotation.
     pub(crate) turn: Travel,
-    /// Largest overlap in metres at which the shape may pass by another one.
+    /// Largest overlap in metres that the filters of ghost collisions and one-way shapes tolerate.
     pub(crate) slack: Step,
     pub(crate) body: u32,
     /// Distance of the surface from the vertices.
@@ -192,7 +192,7 @@ impl MotionRange<'_> {
     }
 }
 
-/// Largest overlap in metres at which a shape may pass by another one.
+/// [`ShapeMotion::slack`] of a shape.
 fn slack_of(bounds: Aabb) -> Step {
     let half = bounds.extents();
     narrow(half.x.max(half.y) / 16)

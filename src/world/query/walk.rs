@@ -345,7 +345,7 @@ impl<'a> Walk<'a> {
     ///
     /// [`OneWay`]: crate::collision::OneWay
     fn is_deep(&self, separation: Fx) -> bool {
-        separation < -(self.world.state.config.speculative_distance / 4)
+        separation < -self.world.state.config.touching_distance()
     }
 
     /// Whether the character overlaps a shape that it is passing through, or that the mask leaves out for a while.

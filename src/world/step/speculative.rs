@@ -119,7 +119,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // The approach is increased by a quarter, because a gap that almost closes acts as well.
+            // A quarter is added, because a point whose gap almost closes can get an impulse, too.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }

@@ -24,8 +24,8 @@ impl World {
     /// [`Game::work`](crate::lockstep::Game::work) can be based on the result.
     ///
     /// The bound is the number of bodies, pairs and joints, times the solver's sub-steps and iterations, plus 4 for
-    /// each pair, 1 for each shape, 1/16 for each slot of a handle, and 8 for the tick. Each pair beyond 32 per body
-    /// counts as 65 when it is solved. Finding pairs, and solving new pairs and the pairs of bodies that wake, is
+    /// each pair, 1 for each shape, 1/16 for each slot of a handle, and 8 for the tick. In the product, each pair
+    /// beyond 32 per body counts as 65. Finding pairs, and solving new pairs and the pairs of bodies that wake, is
     /// counted within the tick, if [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
     ///
     /// ```

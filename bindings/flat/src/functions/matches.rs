@@ -1,5 +1,4 @@
-//! Matches: the session of lockstep2d with inputs, states and packets as bytes. The caller transports packets and
-//! fulfils requests.
+//! Matches: the session with inputs, states and packets as bytes. The caller transports packets and fulfils requests.
 
 use std::collections::VecDeque;
 

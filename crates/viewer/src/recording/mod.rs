@@ -44,7 +44,7 @@ pub(crate) enum RecordingError {
         tick: u64,
         ticks: u64,
     },
-    /// A tick costs more work than the default limit of a verifier, by [`Game::work`] alone.
+    /// [`Game::work`] of the tick exceeds the default limit of a verifier.
     TooMuch,
     Record(RecordError),
     Log(InputError),

@@ -49,7 +49,7 @@ pub(super) struct Unit {
     angle_scaling: Scaling,
     pub(super) leverage: Leverage,
     is_limited: bool,
-    /// Ratio of the denominators with and without geometric stiffness, with 30 fraction bits.
+    /// Denominator of the effective mass with geometric stiffness over that without, with 30 fraction bits.
     stiffened: i64,
 }
 

@@ -125,7 +125,7 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     L::sub(new, old)
 }
 
-/// Lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`.
+/// Lever ratios averaged over the predicted rotation: `e + across (-e_y, e_x) - along e`.
 #[inline(always)]
 fn ratios_ahead<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
