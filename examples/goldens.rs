@@ -1,5 +1,5 @@
-//! Plays the golden scenes on every backend of this machine and compares hashes: `goldens short|goldens|all`.
-//! `tests/cross/run` runs this program on other processors, without files.
+//! Plays the golden scenes on every backend of this machine and compares hashes: `goldens short|goldens|all`. The
+//! program reads no files, because `tests/cross/run` runs it on other processors.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
@@ -23,7 +23,7 @@ const REPLAYS: [(&str, &[u8]); 3] = [
 /// Seed of the golden scenes.
 const SEED: u64 = 1;
 
-/// For each scene, expected hashes after numbers of ticks.
+/// For each scene, pairs of a number of ticks and the expected hash after these ticks.
 type Hashes<'a> = BTreeMap<&'a str, BTreeSet<(u64, &'a str)>>;
 
 fn main() -> ExitCode {

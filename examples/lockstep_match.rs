@@ -15,8 +15,8 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // The network is in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a process of its
-    // own.
+    // The network is in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a `Port`, each peer can be a process of
+    // its own.
     let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
     let options = PeerOptions::lockstep();
     let (host, guest) = (PeerIdentity::random(), PeerIdentity::random());
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     peers[0].end_at(TICKS);
     let mut now = Duration::ZERO;
     while peers.iter().any(|peer| peer.status() != Some(Status::Closed)) {
-        // Simulated time. A game passes the time since its start, and sleeps.
+        // Simulated time. A game passes the real time since its start, and sleeps between updates.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {

@@ -23,14 +23,14 @@ fn main() -> Result<(), SetupError> {
     let scene = Scene::find("box_stack").expect("a scene of the engine");
     let setup = scene.setup(0);
 
-    // A peer without delay.
+    // A peer that gets every input in time.
     let mut peer = Sandbox::new(&setup)?;
     for tick in 0..60 {
         let input = true_input(&peer, tick);
         peer.step(&[input]);
     }
 
-    // The inputs of the last ten ticks are late. Until they arrive, the prediction is that the player does nothing.
+    // The inputs of the last ten ticks are late. Until they arrive, this peer predicts that the player does nothing.
     let mut here = Sandbox::new(&setup)?;
     for _ in 0..50 {
         here.step(&[vec![]]);

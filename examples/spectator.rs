@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let mut now = Duration::ZERO;
     loop {
-        // Simulated time. A game passes the time since its start, and sleeps.
+        // Simulated time. A game passes the real time since its start, and sleeps between updates.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         if peers.len() == 2 && peers[0].tick() >= 120 {
-            // The spectator receives a state and the inputs since then.
+            // The spectator receives a state, and the inputs of the ticks after that state.
             let me = PeerIdentity::random();
             peers.push(Peer::watch(&(), options, me, network.port(2), Network::address(1))?);
         }

@@ -89,23 +89,24 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. If at most this many bytes of
-/// a string are missing, the decoder reports an unexpected end, otherwise an exceeded limit.
+/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. For a string that lacks at
+/// most this many bytes, the decoder reports an unexpected end, and otherwise an exceeded limit.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
 /// A length prefix is not trusted: allocations are bounded by a multiple of the bytes given, plus up to 1 MiB per list.
-/// Do not decode untrusted bytes as lists of values that take no bytes, or as recursive types: their length or depth is
-/// unbounded.
+/// Do not decode untrusted bytes as lists of zero-sized values, whose length is unbounded, or as recursive types, whose
+/// depth is unbounded.
 ///
 /// # Errors
-/// [`DecodeError`] if there are more than [`DECODE_BYTES_MAX`] bytes, or they are not exactly one such value.
+/// [`DecodeError`] if there are more than [`DECODE_BYTES_MAX`] bytes, or if they do not encode exactly one value of
+/// this type.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
-    // bincode allocates the announced length of a string, up to a constant limit, before it checks whether the string
-    // is there. Claiming the unused part of the limit in advance lowers the limit to the number of bytes plus the
+    // bincode allocates the announced length of a string, up to a constant limit, before it checks whether the input is
+    // that long. Claiming the unused part of the limit in advance lowers the limit to the number of bytes plus the
     // slack.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
@@ -170,7 +171,7 @@ mod tests {
         }
     }
 
-    /// A string that exceeds the bytes by more than the slack is rejected for its size.
+    /// If a string's announced length exceeds the input by more than the slack, the decoder reports an exceeded limit.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {

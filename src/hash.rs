@@ -44,14 +44,14 @@ impl StateHash {
         Self::of_bytes(&bytes)
     }
 
-    /// The digest as input of another digest, equal on every machine.
+    /// Bytes of the digest as input of another digest. They are equal on every machine.
     #[cfg(not(lockstep2d_broken))]
     fn bytes(self) -> [u8; 16] {
         self.0.to_le_bytes()
     }
 
-    /// Deliberately wrong, for the canary `tests/cross/run broken`: these bytes depend on byte order and on the width
-    /// of `usize`. On x86-64 they are right.
+    /// A deliberate mistake for the canary `tests/cross/run broken`: these bytes depend on the byte order and on the
+    /// width of `usize`. They are right on 64-bit little-endian targets.
     #[cfg(lockstep2d_broken)]
     #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
     fn bytes(self) -> alloc::vec::Vec<u8> {
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(alloc::format!("{}", StateHash(0xab)), "000000000000000000000000000000ab");
     }
 
-    /// Expected values of the reference implementation in C, xxHash 0.8.
+    /// The expected values come from the reference implementation in C, xxHash 0.8.
     #[test]
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");

@@ -1,13 +1,13 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
 //! Equal setups and inputs give equal state hashes after every tick, on every machine: the simulation uses no
-//! floating-point numbers. Replays contain hashes, so that any machine can check this.
+//! floating-point numbers. Replays contain these hashes, so that any machine can verify a replay.
 //!
 //! - [`world`]: start here. [`world::World`] owns bodies, shapes and joints and steps them.
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
-//! - [`peer`]: a participant of a match of any game. [`session`]: the protocol between peers, without I/O.
+//! - [`peer`]: plays any game in a match with other peers. [`session`]: the protocol between peers, without I/O.
 //! - [`replay`]: writes, reads and verifies replay files.
 //! - [`report`]: files that peers write when their states differ. Comparing these files shows which peer diverged, when
 //!   and where.
@@ -54,8 +54,8 @@ pub mod solver;
 mod threads;
 pub mod world;
 
-/// Version of the engine's arithmetic, increased when the same inputs may give another state. Snapshots of another
-/// version are rejected, and replays of another version cannot be played.
+/// Version of the engine's arithmetic. It increases when the same inputs may give another state. The engine rejects
+/// snapshots of another version, and cannot play replays of another version.
 pub const SEMANTICS: u32 = 23;
 
 /// Version of this crate.

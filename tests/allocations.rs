@@ -94,7 +94,7 @@ fn piles_and_joints_at_rest_allocate_nothing() {
     }
 }
 
-/// The joints of a hanging chain are checked in every tick.
+/// Every tick compares the loads of the joints of a hanging chain with their thresholds.
 #[test]
 fn joints_with_thresholds_allocate_nothing() {
     let config = Config { sleeping: false, ..Config::default() };
@@ -138,14 +138,15 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
     }
 }
 
-/// In a changing scene, buffers reach new maxima from time to time.
+/// In a changing scene, a buffer allocates only when it needs more room than ever before.
 #[test]
 fn a_drum_allocates_only_for_new_records() {
     let growths = allocations(&mut world_of("drum"), 120, 240);
     assert!(growths < 30, "{growths} allocations in 240 ticks");
 }
 
-/// A file may have a keyframe for every tick. Those that exceed the budget are dropped one by one and not at the end.
+/// A file may have a keyframe for every tick. The timeline drops keyframes beyond its budget while it reads the file,
+/// not afterwards.
 #[test]
 fn keyframes_from_a_file_take_no_more_memory_than_their_budget() {
     let ticks = 2000;

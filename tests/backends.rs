@@ -43,7 +43,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Expects that all variants end in the hashes of the file. `choose` selects a variant of a world.
+/// Expects that all variants end in the hashes of the file. `choose` applies a variant to a world.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -110,8 +110,8 @@ fn the_number_of_threads_may_change_between_ticks() {
     });
 }
 
-/// Fast rods, wheels with heavy hubs, boxes, bouncing balls and a chain: bodies that exceed the speed limit beside some
-/// that do not, in the same batches.
+/// Fast rods, wheels with heavy hubs, boxes, bouncing balls and a chain: bodies that exceed the speed limit, and slower
+/// ones in the same batches.
 fn faulty_world(seed: u64) -> World {
     let mut world = World::default();
     let mut rng = Rng::new(seed);

@@ -163,7 +163,7 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // A box leaves a step before it descends, so that it is off the ground in some ticks.
+            // A character with the shape of a box leaves a step before it descends. It is off the ground in some ticks.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");
@@ -215,7 +215,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1.5))), &[slab]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
-    // 3 m/s are too slow: the rise stops inside the slab.
+    // At 3 m/s, the jump ends inside the slab and the character falls back to the chain.
     for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
         state.velocity.y = speed;
         for _ in 0..150 {

@@ -54,8 +54,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene with a number of ticks and the undisturbed trace. The number is that of the scene's
-/// golden, limited to [`TICKS_MAX`] in the long run. Otherwise the limit is 150, or 30 for a large scene.
+/// Calls `hold` for every scene with a number of ticks and the undisturbed trace. The number of ticks is that of the
+/// scene's golden, limited to [`TICKS_MAX`] in the long run. Otherwise the limit is 150, or 30 for a large scene.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });

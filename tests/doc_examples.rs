@@ -58,7 +58,7 @@ fn read(text: &str, module: &mut Module) {
     }
 }
 
-/// Whether `cargo test --doc` compiles such a code block.
+/// Whether `cargo test --doc` compiles a code block with this info string.
 fn is_tested(kind: &str) -> bool {
     kind.split(',').all(|word| matches!(word.trim(), "" | "rust" | "no_run" | "should_panic"))
 }

@@ -11,7 +11,7 @@ use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
-/// A ground, a box at rest on it, a pendulum, and a lift. Gravity is tilted, so that friction holds the box.
+/// A ground, a box at rest on it, a pendulum, and a lift. Gravity is tilted, so that a friction force acts on the box.
 fn scene() -> World {
     build_scene().expect("a valid scene")
 }
@@ -322,7 +322,7 @@ fn the_fit_shows_the_ground_below_what_falls() {
     assert!(window.upper.y < fx!(12), "{window:?}");
 }
 
-/// Tags are closed in order, attributes quoted, and text has no raw markup.
+/// Checks that tags are closed in order, that attributes are quoted, and that text has no raw markup.
 fn check_well_formed(document: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = document;

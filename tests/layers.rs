@@ -202,7 +202,7 @@ fn wrong_folders_and_circles_are_found() {
     assert_eq!(wrong(&same_folder), (0, 0), "a circle within a folder");
 }
 
-/// `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
+/// Name of a file's folder: `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
 fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     let is_folder = |name: &String| {
         place.len() > 2

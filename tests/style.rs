@@ -4,7 +4,7 @@ mod source;
 
 use source::{Source, Token, files, tokens};
 
-/// A longer file has more than one subject.
+/// Largest number of lines of a file. A longer file has more than one subject.
 const LINES_MAX: usize = 400;
 
 /// Words that the library may not use, and why.

@@ -12,7 +12,7 @@ use crate::ours::Ours;
 use crate::rapier::Rapier;
 use crate::script::{Event, Script};
 
-/// Engines, in the order of a round.
+/// Engines, in the order in which a round runs them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -92,7 +92,8 @@ impl Inventory {
         Inventory { counts: engine.counts(), mass }
     }
 
-    /// Whether the counts are equal, and the masses equal within 0.5 %. Engines approximate rounded corners.
+    /// Whether the counts are equal, and the masses equal within 0.5 %. Masses differ because engines approximate
+    /// rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass
     }
@@ -168,7 +169,7 @@ pub trait Engine {
 
     fn restore(&mut self, slot: usize) -> Result<()>;
 
-    /// Checksum of a tick that was just saved in a slot: the hash of the state if the engine has one, otherwise the
+    /// Checksum of the state that was just saved in a slot: the engine's state hash if it has one, otherwise the
     /// XXH3-128 of the save.
     fn checksum(&self, slot: usize) -> u128;
 

@@ -130,7 +130,8 @@ fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
 
 const DRUM: u32 = 484;
 
-/// A single drum. A larger drum has a deeper pile and so another mix of work, unlike a larger number of small drums.
+/// A single drum, whose pile is deeper if it has more bodies. So the mix of work changes with the size, unlike in
+/// `drums`.
 fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     add_drum(&mut scene, Vec2::ZERO, bodies)?;

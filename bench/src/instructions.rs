@@ -27,7 +27,7 @@ pub struct Point {
     pub millions: f64,
 }
 
-/// Counts the instructions of the timed steps: the difference between a full run and a run that ends before them.
+/// Counts the instructions of the timed steps: the difference between a full run and a run without the timed steps.
 pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     let mut points = Vec::new();
     for &size in &plan.sizes {

@@ -68,7 +68,7 @@ struct GrowthArguments {
     /// Runs of each engine, interleaved
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Count instructions of lockstep2d instead of the time of all engines: one round under valgrind, which is slow
+    /// Count the instructions of lockstep2d in one slow round under valgrind, instead of timing all engines
     #[arg(long, conflicts_with = "rounds")]
     instructions: bool,
     /// Print lines of JSON instead of a table
@@ -266,7 +266,7 @@ fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {
     Ok(())
 }
 
-/// Progress bar on stderr, if it is a terminal.
+/// Progress bar, shown if stderr is a terminal.
 fn progress(length: u64) -> Result<ProgressBar> {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} runs, {eta} left  {msg}")?;
     Ok(ProgressBar::new(length).with_style(style))

@@ -109,7 +109,7 @@ pub fn end_state(engine: &dyn Engine) -> EndState {
     }
 }
 
-/// Cost of keeping the current state: medians of five repetitions.
+/// Cost of saving, restoring and hashing the current state: medians of five repetitions.
 pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
     let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..5 {

@@ -120,7 +120,7 @@ fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }
 
-/// Measures the bytes in worlds with bodies only, with contacts and with joints.
+/// Measures the bytes in three kinds of worlds: with bodies only, with contacts, and with joints.
 pub fn bytes() -> Result<Bytes> {
     let few = save_bytes(&scattered(1000)?) as f64;
     let many = save_bytes(&scattered(9000)?) as f64;
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(bytes.body, 52.0);
         // A save also has 8 bytes for each contact without points.
         assert!((88.0..90.0).contains(&bytes.contact), "{bytes:?}");
-        // A joint takes a byte of flags, 4 bytes for the turns, and 4 bytes for each impulse that is not 0.
+        // A joint takes a byte of flags, 4 bytes for its whole turns, and 4 bytes for each impulse that is not 0.
         assert!((5.0..=13.0).contains(&bytes.joint), "{bytes:?}");
     }
 }

@@ -1,9 +1,9 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
 //! Commands refer to bodies by handles that earlier commands created. So each command is executed once, on a world that
-//! is never stepped, and stored with its outcome. The list is valid for every engine, because the commands of the
-//! scenes in [`SCENES`] depend only on what earlier commands have set, such as the user data of bodies, and not on
-//! results of the simulation.
+//! is never stepped, and stored with its outcome. The commands of the scenes in [`SCENES`] depend only on what earlier
+//! commands have set, such as the user data of bodies, and not on results of the simulation. So the list is valid for
+//! every engine.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -78,7 +78,7 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        // A moved body is placed at its target at once: the next `MoveTo` starts from there.
+        // This world is never stepped, so a moved body jumps to its target. The next `MoveTo` starts from there.
         let at_once = match command {
             Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
             ref other => other.clone(),

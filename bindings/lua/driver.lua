@@ -1,4 +1,5 @@
---- Two drivers play a match in one process: states stay equal while garbage is collected, and a key can be chosen.
+--- Tests of the driver. Two drivers play a match in one process, and their states stay equal while garbage is
+--- collected.
 local ffi = require("ffi")
 local ls = require("lockstep2d")
 local Driver = require("lockstep2d_match")
@@ -7,7 +8,7 @@ local Game = require("game")
 -- Milliseconds between updates.
 local INTERVAL = 4
 
---- Allocations after a collection reuse the memory of objects that nothing keeps alive.
+--- Collects garbage, and overwrites the freed memory by new allocations, so that a dangling reference shows up.
 local function collect()
     collectgarbage()
     local filled = {}
@@ -16,7 +17,8 @@ local function collect()
     end
 end
 
---- Two peers, and the packets between them. `changes` are changes of the settings.
+--- Makes two peers, and a function that delivers the packets between them. `changes` are settings that differ from
+--- those below.
 local function connect(new_game, changes)
     local peers, flying = {}, {}
     for index = 1, 2 do
@@ -51,7 +53,8 @@ local function connect(new_game, changes)
     return peers, deliver
 end
 
---- `latency(step)` is in steps of `INTERVAL`, 1 by default; `read(seats)` is random by default.
+--- Plays a match until both peers have played `ticks` ticks. `latency(step)` is in steps of `INTERVAL`, 1 by default.
+--- `read` returns random inputs by default.
 local function play(new_game, ticks, latency, read, guess)
     local peers, deliver = connect(new_game, { guess = guess })
     local random = 1
@@ -77,7 +80,7 @@ end
 
 play(Game.new, 300)
 
--- Games of users may return a reference into memory that nothing keeps alive.
+-- A game may return a hash that is a reference into memory that nothing keeps alive.
 play(function()
     local game = Game.new()
     function game.hash()
@@ -88,7 +91,7 @@ play(function()
     return game
 end, 300)
 
--- Each result of `read` counts for one tick, while the input delay grows and shrinks.
+-- Each result of `read` counts for exactly one tick, also while the input delay grows and shrinks.
 local results, played = {}, {}
 local function counting()
     local game = Game.new()
@@ -110,7 +113,7 @@ for tick, input in ipairs(played[peers[1].game]) do
     assert(input == (tick - 1) % 8, "tick " .. tick .. " has the input " .. input)
 end
 
--- The hash of the example is alive as long as its variable.
+-- The hash that the example's game returns stays valid as long as a variable holds it.
 local game = Game.new()
 local before = game:hash()
 local text = ls.hex(before)
@@ -144,7 +147,7 @@ local function raises(text, peer, step, read)
     assert(not done and tostring(why):match(text), tostring(why))
 end
 
--- After an error of the game, whose state then lacks a tick, nothing is played.
+-- After an error of the game, its state lacks a tick, and the driver plays no more ticks.
 local broken, steps = Game.new(), 0
 function broken.step()
     steps = steps + 1
@@ -161,7 +164,7 @@ for step = 1001, 1200 do
 end
 assert(steps == 20 and alone.tick == 19, steps .. " steps, tick " .. alone.tick)
 
--- While inputs are missing, events are kept, and others can join.
+-- While `read` fails, the driver keeps its events, and other peers can join.
 for text, wrong in pairs({
     ["no gamepad"] = function() error("no gamepad") end,
     ["ls2d_match_advance"] = function() return "\0\0" end,
@@ -189,7 +192,7 @@ for text, wrong in pairs({
     assert(seats[1] == ls.EVENT_SEATED, "the seat of the guest")
 end
 
--- Events of states that differ have the hashes.
+-- A desync event has the hashes of both states.
 local both, deliver = connect(function(index)
     local game = Game.new()
     function game.hash()

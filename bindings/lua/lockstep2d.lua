@@ -1,9 +1,9 @@
---- The flat API of lockstep2d for LuaJIT and LÖVE. Names are those of lockstep2d.h without their prefix:
---- `ls.world_step(world)`, `ls.DYNAMIC`. The header and the library have to be in the folder of this file or of the
---- LÖVE game, the library alternatively on the search path of the system.
+--- The flat API of lockstep2d for LuaJIT and LÖVE. Names are those of lockstep2d.h without the prefix `ls2d_` or
+--- `LS2D_`: `ls.world_step(world)`, `ls.DYNAMIC`. The header and the library have to be in the folder of this file or
+--- of the LÖVE game. The library may also be on the search path of the system.
 ---
---- A function with a status raises an error if it fails, and otherwise returns whether there was something to return
---- (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
+--- A function that returns a status in C raises an error if it fails. Otherwise it returns true for `LS2D_OK`, and
+--- false for `LS2D_NONE` (nothing to return). Other functions return their result.
 ---
 --- Numbers that enter the state are integers (`ls.fx`). Lua's own numbers are floats, for drawing.
 local ffi = require("ffi")
@@ -90,7 +90,7 @@ function ls.make(struct, ...)
     return made
 end
 
---- Memory for a result, at index 0: `ls.out("handle")`, `ls.out("body")`.
+--- Memory for a result, which is at index 0: `ls.out("handle")`, `ls.out("body")`.
 function ls.out(type)
     return ffi.new("ls2d_" .. type .. "[1]")
 end
@@ -111,7 +111,7 @@ function ls.fx(value)
     return ffi.new("int64_t", value) * 4294967296LL
 end
 
---- A Lua number, for drawing.
+--- Converts a fixed-point number to a Lua number, for drawing.
 function ls.number(fx)
     return tonumber(fx) / 4294967296
 end

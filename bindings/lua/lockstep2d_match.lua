@@ -1,14 +1,14 @@
 --- Plays a game in a match of `ls2d_match_host` or `ls2d_match_join`.
 ---
 --- The game has
---- - `step(inputs, absent)`: advances by a tick. `inputs` of all seats are a string, `absent` has a bit for each empty
----   seat;
---- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores it, frees the copy;
---- - `hash()`: an `ls2d_hash` of the whole state, which the driver copies. `ls.world_hash` writes into an
+--- - `step(inputs, absent)`: advances by a tick. `inputs` is a string with the inputs of all seats, `absent` has a bit
+---   for each empty seat;
+--- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores a copy, frees a copy;
+--- - `hash()`: returns an `ls2d_hash` of the whole state. The driver copies the hash. `ls.world_hash` writes into an
 ---   `ffi.new("ls2d_hash")`;
 --- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
 ---
---- `send(to, packet)` sends a packet to an address; both are strings.
+--- `send(to, packet)` sends a packet to an address. `to` and `packet` are strings.
 local ffi = require("ffi")
 local ls = require("lockstep2d")
 
@@ -18,8 +18,9 @@ Driver.__index = Driver
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
 --- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
---- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` has 28 random bytes,
---- for systems without /dev/urandom. They give the `peer`, `key` and `secret` that are not in `settings`.
+--- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` is a string of 28
+--- random bytes, which systems without /dev/urandom need. If `settings` lacks `peer`, `key` or `secret`, the value is
+--- taken from the random bytes.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     -- For `peer`, `key` and `secret`, which must not be guessable.
@@ -37,7 +38,7 @@ function Driver.new(options)
     end
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "peer"), random:sub(1, 4), 4)
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "key"), random:sub(5), 24)
-    -- After the random bytes, because a peer that returns to its seat passes its own `key` and `secret`.
+    -- Settings replace random values, because a peer that returns to its seat passes its own `key` and `secret`.
     for field, value in pairs(options.settings or {}) do
         config[field] = value
     end
@@ -68,18 +69,19 @@ function Driver.new(options)
     return self
 end
 
---- Takes a packet from an address. `now` is in seconds.
+--- Processes a packet that arrived from an address. `now` is in seconds.
 function Driver:receive(now, from, packet)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
 --- Advances the match to the time `now` in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
---- of your own seats as a string; `seats` is their number. Each result counts for one tick: forget key presses then.
---- `read` is called several times while the input delay grows. Returns a list of events, whose fields are those of
---- `ls2d_match_event`.
+--- of this peer's seats as a string; `seats` is the number of these seats. Each result of `read` counts for one tick,
+--- so clear recorded key presses in `read`. While the input delay grows, an update calls `read` several times. Returns
+--- a list of events, whose fields are those of `ls2d_match_event`.
 ---
---- An error of `read` and inputs of a wrong length are raised once packets are sent. The match goes on with the next
---- update, which returns all events. After any other error, such as one of the game, each update raises it.
+--- If `read` raises an error or returns inputs of a wrong length, the update first sends its packets and then raises
+--- the error. The next update continues the match, and returns the events of both updates. After any other error, such
+--- as an error of the game, every further update raises this error again.
 function Driver:update(now, read)
     local failure = self.failure
     if not failure then
@@ -102,7 +104,7 @@ function Driver:run(now, read)
         for _, field in ipairs({ "kind", "peer", "seat", "tick", "value" }) do
             event[field] = self.event[field]
         end
-        -- Copies, because a field that is a struct is a reference.
+        -- Copies the hashes, because a field that is a struct is a reference into `self.event`.
         event.ours, event.theirs = ffi.new("ls2d_hash", self.event.ours), ffi.new("ls2d_hash", self.event.theirs)
         if event.kind == ls.EVENT_STATE then
             self:resume(event.tick, ls.take_bytes(event.value))
@@ -117,21 +119,21 @@ function Driver:run(now, read)
     end
     local size = self.size
     while ls.match_next_packet(self.match, self.address, ADDRESS_MAX, size, self.packet, PACKET_MAX, size + 1) do
-        -- A packet that cannot be sent is lost, as in the network.
+        -- If `send` raises an error, the packet counts as lost in the network.
         local sent, why = pcall(self.send, ffi.string(self.address, size[0]), ffi.string(self.packet, size[1]))
         self.send_error = not sent and why or self.send_error
     end
     return failure
 end
 
--- Plays the ticks that are due. An error because of the inputs is returned: no inputs were issued, so the match is as
--- before.
+-- Plays the ticks that are due. Returns an error that concerns the inputs instead of raising it: no inputs were issued,
+-- so the match can continue with the next inputs.
 function Driver:play(now, read)
     while self:is_due(now) do
         local seats = self:seat_count()
         local issued, before = false, self.tick
         local done, why = pcall(function()
-            -- Inputs that were read and not issued are passed again, so that a key press counts once.
+            -- Inputs that were read but not issued are passed again, so that each key press counts exactly once.
             local inputs = self.unissued[seats] or (seats > 0 and read(seats) or "")
             self.unissued = {}
             ls.match_advance(self.match, now * 1e6, inputs, #inputs, self.flag)
@@ -170,8 +172,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Numbers of ticks: all ticks played, ticks with final inputs, and ticks played with final inputs. 0 before the peer
---- has joined.
+--- Returns three numbers of ticks: all ticks played, ticks with final inputs, and ticks played with final inputs. All
+--- are 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0
@@ -182,7 +184,8 @@ end
 
 function Driver:keep(tick)
     self:forget(function(kept) return kept == tick end)
-    -- A copy, because `hash` may be an item of an array: such a reference does not keep the array alive.
+    -- Copies the hash, because the game may return a reference to an item of an array, which does not keep the array
+    -- alive.
     local hash = ffi.new("ls2d_hash[1]")
     hash[0] = self.game:hash()
     self.saves[tick] = { saved = self.game:save(), hash = hash }
@@ -204,7 +207,7 @@ function Driver:resume(tick, state)
     self:keep(tick)
 end
 
---- The newest kept tick up to `tick`, or nil.
+--- The newest tick up to `tick` whose state is saved, or nil.
 function Driver:newest(tick)
     local newest
     for kept in pairs(self.saves) do
@@ -231,7 +234,7 @@ local answers = {
     [ls.REQUEST_CHECKSUM] = function(self, tick)
         ls.match_report_hash(self.match, tick, self.saves[tick].hash)
     end,
-    -- The newest state up to this tick is kept, for peers that join.
+    -- Keeps the newest state up to this tick, for peers that join.
     [ls.REQUEST_FORGET] = function(self, tick)
         local newest = self:newest(tick)
         self:forget(function(kept) return newest ~= nil and kept < newest end)

@@ -1,6 +1,6 @@
 // lockstep2d: deterministic 2D physics for the web.
 
-// For `using`: these declarations are those of TypeScript's library `esnext.disposable`, which a project may lack.
+// Declarations for `using`, equal to those of TypeScript's library `esnext.disposable`, which a project may lack.
 declare global {
     interface SymbolConstructor {
         readonly dispose: unique symbol;
@@ -20,9 +20,9 @@ export interface Vec2 {
     y: Fx;
 }
 declare const handleBrand: unique symbol;
-/** Handle of a body, valid until the body is despawned, or a state from before its spawn is restored: after a rollback
- * another body may have it, so tables of sprites should also compare `userData`. The first bodies have the handles 0,
- * 1, 2 and so on. Convert plain numbers, as in `poses()`, by `as BodyId`. */
+/** Handle of a body. It is valid until the body is despawned, or until a state from before its spawn is restored. After
+ * such a rollback, another body may get the same handle, so a table of sprites should also compare `userData`. The
+ * first bodies have the handles 0, 1, 2 and so on. Convert a plain number, such as one of `poses()`, by `as BodyId`. */
 export type BodyId = number & { readonly [handleBrand]: "body" };
 /** Handle of a shape. */
 export type ShapeId = number & { readonly [handleBrand]: "shape" };
@@ -33,9 +33,9 @@ export type Rotation = Angle | 0;
 
 /** Options of `init`. */
 export interface InitOptions {
-    /** Selects the module; by default, SIMD if the machine has it. */
+    /** Whether to load the module with SIMD: by default, if the machine has SIMD. */
     simd?: boolean | undefined;
-    /** Replaces the inlined module: a `WebAssembly.Module`, a `Response`, an `ArrayBuffer` or a view. */
+    /** A module that replaces the inlined one: a `WebAssembly.Module`, a `Response`, an `ArrayBuffer` or a view. */
     wasm?: object | undefined;
 }
 /** Loads the wasm module. Call it before all functions except `fx`, `degrees`, `radians`, `turns` and `loaded`. */
@@ -146,21 +146,23 @@ export class Random {
     range(low: Num, high: Num): Fx;
 }
 
-/** Rule that combines the values of two shapes: `(a + b) / 2`, `sqrt(a b)`, the smaller value, `a b`, the larger value.
- * If the shapes have different rules, the later one in this list applies. */
+/** Rule that combines the values of two shapes, in this order: `(a + b) / 2`, `sqrt(a b)`, the smaller value, `a b`,
+ * the larger value. If the shapes have different rules, the rule that comes later in this order applies. */
 export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
-/** Effect of a sensor on dynamic bodies, in proportion to the covered part of each shape. Vectors are in the frame of
- * the area's body. Effects are 0 by default. */
+/** Effect of a sensor, the area, on dynamic bodies. The effect is in proportion to the part of each shape that is in
+ * the area. Vectors are along the axes of the area's body. Effects are 0 by default. */
 export interface AreaOptions {
     /** Acceleration in m/s² besides gravity, within ±10 000 on each axis. */
     acceleration?: Vec;
-    /** Force in N per m² of the covered part of a body, within ±2^20 on each axis. */
+    /** Force in N per m² of the part of a body that is in the area, within ±2^20 on each axis. */
     force?: Vec;
-    /** Velocity of the medium in m/s, within ±400 on each axis. It acts by `linearDrag`. */
+    /** Velocity of the medium relative to the area's body in m/s, within ±400 on each axis. It acts only through
+     * `linearDrag`. */
     flow?: Vec;
-    /** Rate per second at which velocities approach that of the medium, 0 to 1000. */
+    /** Rate per second at which the velocity of a body in the area approaches the velocity of the medium, 0 to 1000. */
     linearDrag?: Num;
-    /** Rate per second at which angular velocities approach that of the medium, 0 to 1000. */
+    /** Rate per second at which the angular velocity of a body in the area approaches that of the area's body, 0 to
+     * 1000. */
     angularDrag?: Num;
     /** Density of the medium in kg/m², for buoyancy, 0 to 2^20. */
     density?: Num;
@@ -182,20 +184,20 @@ export interface ShapeOptions {
     restitution?: Num;
     /** `maximum` by default. */
     restitutionMixing?: Mixing;
-    /** Approach speed in m/s below which the shape does not bounce, 0 to 400: that of the world by default. The smaller
-     * value of two shapes applies. */
+    /** Approach speed in m/s below which the shape does not bounce, 0 to 400: the world's `restitutionThreshold` by
+     * default. For two shapes, the smaller of their values applies. */
     restitutionThreshold?: Num;
     /** Rolling resistance of a round shape as a fraction of its radius, 0 to 1: 0 by default. */
     rollingResistance?: Num;
     /** Speed of the surface around the shape, clockwise, in m/s, within ±400: 0 by default. */
     surfaceSpeed?: Num;
-    /** Categories of the shape, one bit each, up to 64: 1 by default. Shapes collide if the mask of each has a category
-     * of the other. */
+    /** Categories of the shape, one bit each, up to 64: 1 by default. Two shapes collide if the mask of each shape has
+     * a category of the other shape. */
     category?: bigint | number;
     /** Bits of the categories that the shape collides with: all by default. */
     mask?: bigint | number;
-    /** Two shapes with an equal group always collide if the group is positive, never if it is negative. 32 bits: 0, no
-     * group, by default. */
+    /** Two shapes with the same positive group always collide, two shapes with the same negative group never. A signed
+     * integer of 32 bits: 0, no group, by default. */
     group?: number;
     /** Direction in the body's frame in which other shapes pass through; `degrees(90)` is up. */
     oneWay?: Rotation;
@@ -203,9 +205,10 @@ export interface ShapeOptions {
     sensor?: boolean;
     /** Makes the shape a sensor that acts on bodies. Segments and chains cannot be areas. */
     area?: AreaOptions;
-    /** Whether contacts are in `contactBegin` and `contactEnd`: true by default. The option of one shape suffices. */
+    /** Whether contacts are in `contactBegin` and `contactEnd`: true by default. It suffices that one of the two shapes
+     * has this option. */
     contactEvents?: boolean;
-    /** Whether hits are in `hits`: false by default. The option of one shape suffices. */
+    /** Whether hits are in `hits`: false by default. It suffices that one of the two shapes has this option. */
     hitEvents?: boolean;
     /** Whether sensors detect the shape: true by default. */
     sensorEvents?: boolean;
@@ -213,7 +216,7 @@ export interface ShapeOptions {
     detectSensors?: boolean;
     /** Radius in metres by which a polygon, hull or box is rounded outwards: 0 by default. */
     rounding?: Num;
-    /** A number of 64 bits for the game: 0 by default. */
+    /** A number of 64 bits that the game may choose freely: 0 by default. */
     userData?: bigint | number;
 }
 declare const shapeBrand: unique symbol;
@@ -248,7 +251,7 @@ export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; g
 /** `kinematic` bodies move at their velocity, which forces and contacts do not change. `dynamic` bodies are moved by
  * forces, contacts and joints. */
 export type BodyType = "fixed" | "kinematic" | "dynamic";
-/** Mass of a body, instead of that of its shapes. */
+/** Mass of a body, instead of the mass of its shapes. */
 export interface MassOptions {
     /** Mass in kg, 1e-5 to 2^30. */
     mass: Num;
@@ -267,8 +270,8 @@ export interface BodySettings {
     gravityScale?: Num;
     /** Speed in m/s below which the body becomes ready to sleep, 0 to 400: 0.05 by default. */
     sleepSpeed?: Num;
-    /** Bodies through which the body cannot tunnel: `fixed` by default. `bullet`: all except bullets. `kinematic`:
-     * fixed and kinematic bodies. */
+    /** Bodies through which the body cannot tunnel: `fixed` by default. `bullet`: all bodies except bullets.
+     * `kinematic`: fixed and kinematic bodies. */
     continuous?: "off" | "fixed" | "bullet" | "kinematic";
     /** Whether the body may fall asleep: true by default. */
     maySleep?: boolean;
@@ -291,14 +294,14 @@ export interface BodyOptions extends BodySettings {
     velocity?: Vec;
     /** Angular velocity in rad/s, counter-clockwise: 0 by default. */
     angularVelocity?: Num;
-    /** Mass, instead of that of the shapes. Without it, and without a shape that has an area and a density, a dynamic
-     * body has mass 0, and forces, contacts and joints do not move it. */
+    /** Mass, instead of the mass of the shapes. Without this option, a dynamic body needs a shape that has both an area
+     * and a density. Otherwise its mass is 0, and forces, contacts and joints do not move it. */
     mass?: MassOptions;
     /** True by default. */
     enabled?: boolean;
     /** Whether a dynamic body begins asleep: false by default. */
     asleep?: boolean;
-    /** A number of 64 bits for the game: 0 by default. */
+    /** A number of 64 bits that the game may choose freely: 0 by default. */
     userData?: bigint | number;
     /** Name in reports: at most 16 letters, digits, `-` and `_`. */
     name?: string;
@@ -315,36 +318,37 @@ export interface Spring {
     /** Rest position in rad or m: 0 by default. */
     target?: Num;
 }
-/** A joint, with an anchor and an angle on each body. An option that its type does not have throws `VALUE`; a value out
- * of range throws `JOINT`. */
+/** A joint, with an anchor and an angle on each body. An option that the type of the joint does not have throws
+ * `VALUE`; a value out of range throws `JOINT`. */
 export interface JointOptions {
     /** - `revolute`: a hinge.
-     * - `prismatic`: B slides along the x axis of A's frame and does not turn.
+     * - `prismatic`: B slides along the x axis of the joint's frame on A, and does not turn.
      * - `distance`: a rod (`rod`), a rope (`limit`) or a spring between the anchors.
      * - `weld`: B keeps its pose relative to A, rigidly or by springs.
-     * - `wheel`: B slides along the x axis of A's frame and turns.
+     * - `wheel`: B slides along the x axis of the joint's frame on A, and turns.
      * - `motor`: B is driven relative to A with limited force.
-     * - `filter`: the bodies do not collide with each other.
+     * - `filter`: only keeps the bodies from colliding with each other.
      * - `gear`: the wheels about the anchors turn in a fixed ratio.
-     * - `rack`: the wheel about A's anchor rolls along the x axis of B's frame.
+     * - `rack`: the wheel about A's anchor rolls along the x axis of the joint's frame on B.
      * - `pulley`: a rope over two wheels that are fixed in the world. */
     type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
     a: BodyId;
     /** Body B. The joint has no effect while neither body is dynamic. */
     b: BodyId;
-    /** Place of both anchors in the world, in metres, at the current poses, for `World.addJoint`. Sets `anchorA`,
-     * `anchorB`, `angleA` and `angleB`, which must not be given as well. */
+    /** Position of both anchors in the world, in metres, at the current poses. Only for `World.addJoint`. Sets
+     * `anchorA`, `anchorB`, `angleA` and `angleB`, so do not pass these four options as well. */
     anchor?: Vec;
     /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default;
      * [0, 1] for a car. */
     axis?: Vec;
-    /** Anchor in A's frame in metres, within ±128 on each axis, or ±2^30 on a fixed body. The origin by default. */
+    /** Anchor in the frame of body A, in metres, within ±128 on each axis, or ±2^30 on a fixed body. The origin by
+     * default. */
     anchorA?: Vec;
-    /** Anchor in B's frame, like `anchorA`. */
+    /** Anchor in the frame of body B, like `anchorA`. */
     anchorB?: Vec;
-    /** Angle of the joint's frame in A's frame: 0 by default. */
+    /** Angle of the joint's frame on A, in the frame of body A: 0 by default. */
     angleA?: Rotation;
-    /** Angle of the joint's frame in B's frame: 0 by default. */
+    /** Angle of the joint's frame on B, in the frame of body B: 0 by default. */
     angleB?: Rotation;
     /** Range of the angle in rad (revolute), the translation in m (prismatic, wheel), or the length in m, 0 or more
      * (distance). */
@@ -354,7 +358,7 @@ export interface JointOptions {
     motor?: { speed: Num; max: Num };
     /** Spring on the angle in rad (revolute), the translation in m (prismatic, wheel) or the length in m (distance). */
     spring?: Spring;
-    /** Smallest force of the spring in N, 0 or less, and largest, 0 or more (distance). Positive forces push the
+    /** Smallest force (0 or less) and largest force (0 or more) of the spring in N (distance). Positive forces push the
      * anchors apart. Unlimited by default. */
     springForce?: readonly [Num, Num];
     /** Length in metres that is held rigidly, at least 0.001 (distance). */
@@ -369,7 +373,8 @@ export interface JointOptions {
     /** Force in N and torque in N m beyond which the joint is reported in `Events.joints` or, with `breaks`, also
      * removed (all types). The load in the last sub-step of a tick counts: a shock within a tick may go unnoticed. */
     threshold?: { force?: Num; torque?: Num; breaks?: boolean };
-    /** Target velocity of B's anchor relative to A in m/s, in world axes, and largest force in N (motor). */
+    /** Target velocity of B's anchor relative to A in m/s, along the axes of the world, and largest force in N
+     * (motor). */
     linearMotor?: { velocity: Vec; max: Num };
     /** Spring between the anchors: frequency in Hz, damping ratio (weld, motor), and largest force in N (motor, 0 by
      * default). Without it the anchors of a weld are rigid. */
@@ -381,15 +386,15 @@ export interface JointOptions {
     teeth?: readonly [number, number];
     /** Radius of the wheel in metres, 0.001 to 128, negative for a rack on the other side (rack). */
     radius?: Num;
-    /** Positions of the wheels on both sides in the world, in metres (pulley, needed). */
+    /** Positions of the wheels on the sides of A and B, in the world, in metres (pulley, required). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). Needed without `anchor`;
-     * with `anchor` the length follows from the poses. */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). Required without
+     * `anchor`. With `anchor`, the length follows from the poses. */
     length?: Num;
     /** The length on A's side plus `ratio` times the length on B's side is at most `length` (pulley). 0.25 to 4: 1 by
      * default. */
     ratio?: Num;
-    /** A number of 64 bits for the game: 0 by default. */
+    /** A number of 64 bits that the game may choose freely: 0 by default. */
     userData?: bigint | number;
 }
 /** A joint as `World.joint` returns it, for `setJoint` with changes. The fields are those of `JointOptions`; parts that
@@ -398,9 +403,9 @@ export interface JointInfo {
     type: JointOptions["type"];
     a: BodyId;
     b: BodyId;
-    /** In A's frame, in metres. */
+    /** In the frame of body A, in metres. */
     anchorA: Vec2;
-    /** In B's frame, in metres. */
+    /** In the frame of body B, in metres. */
     anchorB: Vec2;
     angleA: Angle;
     angleB: Angle;
@@ -436,16 +441,16 @@ export interface ConfigOptions {
     iterations?: number;
     /** Contact constraints: 0 for soft (the default), 1 for Baumgarte contacts. */
     contact?: number;
-    /** Stiffness of soft contacts in Hz, 1 to 1000, effectively at most an eighth of the sub-steps per second: 30 by
-     * default. For Baumgarte contacts, share of the overlap corrected in each sub-step, 0 to 1. */
+    /** Stiffness of soft contacts in Hz, 1 to 1000: 30 by default. The solver limits it to an eighth of the number of
+     * sub-steps per second. For Baumgarte contacts, share of the overlap corrected in each sub-step, 0 to 1. */
     contactStiffness?: Num;
     /** Damping ratio of soft contacts, 0 to 100: 10 by default. For Baumgarte contacts, overlap in metres that is not
      * corrected, 0 to 1. */
     contactDamping?: Num;
     /** Largest speed in m/s with which contacts push shapes apart, 0 to 400: 3 by default. */
     contactPushSpeed?: Num;
-    /** Stiffness of joints in Hz, 1 to 1000, effectively at most a quarter of the sub-steps per second: 60 by default.
-     * */
+    /** Stiffness of joints in Hz, 1 to 1000: 60 by default. The solver limits it to a quarter of the number of
+     * sub-steps per second. */
     jointHertz?: Num;
     /** Damping ratio of joints, 0 to 100: 2 by default. */
     jointDampingRatio?: Num;
@@ -454,8 +459,8 @@ export interface ConfigOptions {
     /** Largest speed of a body in m/s, 1 to 400: 400 by default. Below 27 ticks per second, also at most 15 m per
      * tick. */
     speedMax?: Num;
-    /** Distance in metres at which shapes get contact points, 0.001 to 1: 0.02 by default. Pairs that approach each
-     * other have a larger distance. */
+    /** Distance in metres at which shapes get contact points before they touch, 0.001 to 1: 0.02 by default. The
+     * distance is larger for shapes that approach each other. */
     speculativeDistance?: Num;
     /** Largest margin in metres of the bounding boxes in the broad phase, 0.001 to 10: 0.1 by default. */
     fatMargin?: Num;
@@ -467,8 +472,8 @@ export interface ConfigOptions {
     shapeLimit?: number;
     /** Largest number of joints, at most 2^20, the default. */
     jointLimit?: number;
-    /** Largest number of pairs of near shapes in a tick, at most 2^20: 2^18 by default. A tick with more pairs leaves
-     * some out, and counts as a fault. */
+    /** Largest number of pairs of shapes with overlapping fat AABBs in a tick, at most 2^20: 2^18 by default. A tick
+     * with more pairs leaves some of them out, and counts as a fault (`faults`). */
     pairLimit?: number;
     /** Whether bodies at rest fall asleep: true by default. */
     sleeping?: boolean;
@@ -480,7 +485,7 @@ export type ConfigInfo = {
         : [Vec] extends [ConfigOptions[Name]] ? Vec2 : Exclude<ConfigOptions[Name], undefined>;
 };
 
-/** An object of the library. `dispose` frees it at once, the garbage collector at some later time. */
+/** An object of the library. `dispose` frees the object at once, the garbage collector frees it at some later time. */
 declare class Handle {
     #private;
     protected constructor();
@@ -498,8 +503,8 @@ export interface BodyPose {
     angle?: Rotation;
 }
 
-/** Edits, which a world executes at once and a list of commands collects. A world throws `STALE_BODY`, `STALE_SHAPE` or
- * `STALE_JOINT` for an unknown handle, and does not change. A list accepts every handle. */
+/** Edits. A world executes them at once, a list of commands collects them. A world throws `STALE_BODY`, `STALE_SHAPE`
+ * or `STALE_JOINT` for an unknown handle, and does not change. A list accepts every handle. */
 declare class Edits extends Handle {
     #private;
     /** Removes a body with its shapes and joints. */
@@ -530,15 +535,16 @@ declare class Edits extends Handle {
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
     /** Moves the origin of a body at once to a position in metres, with an angle (0 by default). */
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Moves a kinematic body to a pose during the next tick. Its velocity is then 0. Throws `WRONG_KIND` for other
-     * bodies, and `SPEED` if the pose is out of reach in a tick at the world's `speedMax`: use `setTransform` then. */
+    /** Moves a kinematic body to a pose during the next tick. After this tick its velocity is 0. Throws `WRONG_KIND`
+     * for other bodies, and `SPEED` if the body cannot reach the pose in one tick at the world's `speedMax`. Use
+     * `setTransform` for such a distance. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Replaces the settings of a body, and wakes it. Omitted settings have their defaults. Other properties in
-     * `World.body` are not accepted here. */
+    /** Replaces the settings of a body, and wakes it. Omitted settings have their defaults. Other properties that
+     * `World.body` returns throw `VALUE`. */
     setBody(body: BodyId, settings: BodySettings): void;
     /** Changes the type of a body. A body that becomes fixed stops. */
     setType(body: BodyId, type: BodyType): void;
-    /** Sets the mass of a body; without `mass`, that of its shapes. */
+    /** Sets the mass of a body; without `mass`, the mass of its shapes. */
     setMass(body: BodyId, mass?: MassOptions): void;
     setUserData(body: BodyId, data: bigint | number): void;
     /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise throws `NAME`. `""` removes the
@@ -561,8 +567,8 @@ declare class Edits extends Handle {
     explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
 }
 
-/** A list of edits, for replays and networks. If it removes nothing, the bodies that it spawns in a new world have the
- * handles 0, 1, 2 and so on, and so have shapes and joints: `0 as BodyId` is the first body. */
+/** A list of edits, for replays and networks. If a new world executes a list that removes nothing, the spawned bodies
+ * have the handles 0, 1, 2 and so on: `0 as BodyId` is the first body. The same holds for shapes and joints. */
 export class Commands extends Edits {
     #private;
     constructor();
@@ -571,14 +577,14 @@ export class Commands extends Edits {
     /** Adds a body at each pose, all with one definition. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: readonly BodyPose[]): undefined;
     addShape(body: BodyId, shape: ShapeDef): undefined;
-    /** Adds a joint, with `anchorA` and `anchorB`. */
+    /** Adds a joint. Its anchors are given by `anchorA` and `anchorB`. */
     addJoint(options: Omit<JointOptions, "anchor" | "axis">): undefined;
     /** Adds a joint between each pair of bodies, all with one definition. */
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: readonly (readonly [BodyId, BodyId])[]): undefined;
     readonly length: number;
     clear(): void;
     toBytes(): Uint8Array;
-    /** Replaces the list by one from bytes, which may come from any source. */
+    /** Replaces the contents of the list by those of encoded bytes, which may come from any source. */
     fromBytes(bytes: Uint8Array): this;
 }
 
@@ -620,8 +626,8 @@ export interface ShapeInfo {
     /** Kind of geometry. Boxes and hulls are polygons. */
     type: "circle" | "segment" | "polygon" | "capsule" | "link";
     body: BodyId;
-    /** In metres from the shape's centre: none of a circle, the ends of a segment or capsule, the corners of a polygon,
-     * or the ends of a link and the far ends of its neighbours (zero without a neighbour). */
+    /** In metres from the shape's centre: the ends of a segment or capsule, the corners of a polygon, or the ends of a
+     * link and the far ends of its neighbours (zero without a neighbour). Empty for a circle. */
     points: Vec2[];
     /** Radius of a circle or capsule, or rounding, in metres. */
     radius: Fx;
@@ -646,15 +652,16 @@ export interface Filter {
     sensors?: boolean;
     /** Bodies not to see, at most 8: none by default. */
     except?: readonly BodyId[];
-    /** Treatment of shapes that a ray or a cast starts in. `report`: they are hits. `ignore`: they are not seen.
-     * `resist`, the default: they are hits of rays, and of casts that would move deeper into them. */
+    /** Treatment of shapes that a ray or a cast starts in. `report`: these shapes are hits. `ignore`: the query does
+     * not see them. `resist`, the default: they are hits of a ray, and of a cast only if it would move deeper into
+     * them. */
     initialOverlap?: "resist" | "report" | "ignore";
 }
 /** Hit of a ray. */
 export interface RayHit {
     shape: ShapeId;
     body: BodyId;
-    /** Fraction of the translation, 0 to 1. */
+    /** Fraction of the translation at the hit, 0 to 1. */
     fraction: Fx;
     /** Point in the world, in metres. */
     point: Vec2;
@@ -665,7 +672,7 @@ export interface RayHit {
 }
 /** Hit of a moving shape. */
 export interface CastHit extends RayHit {
-    /** Displacement up to the hit, in metres. */
+    /** Displacement of the moving shape up to the hit, in metres. */
     travelled: Vec2;
 }
 /** Two shapes. A handle is stale if its shape was removed. */
@@ -678,20 +685,20 @@ export interface ContactEvent {
 export interface SensorEvent {
     sensor: ShapeId;
     visitor: ShapeId;
-    /** Time within the tick at which the overlap began or ceased, 0 to 1. */
+    /** Time at which the overlap began or ceased, as a fraction of the tick from 0 to 1. */
     fraction: Fx;
 }
 /** The events of the last tick. */
 export interface Events {
     /** Bodies that moved or fell asleep, in slot order. */
     moved: { body: BodyId; position: Vec2; angle: Angle; fellAsleep: boolean }[];
-    /** Shapes that began to touch, sorted. See `contactEvents`. */
+    /** Shapes that began to touch, sorted by shape A, then by shape B. See `contactEvents`. */
     contactBegin: ContactEvent[];
-    /** Shapes that ceased to touch, sorted. */
+    /** Shapes that ceased to touch, sorted like `contactBegin`. */
     contactEnd: ContactEvent[];
-    /** Shapes that hit each other at `hitSpeed` or faster, sorted. See `hitEvents`. `point` is in the world, in metres;
-     * `normal` is the unit vector from A to B; `impulse` is along the normal over the tick, in N s; `approachSpeed` is
-     * in m/s. */
+    /** Shapes that hit each other at `hitSpeed` or faster, sorted like `contactBegin`. See `hitEvents`. `point` is in
+     * the world, in metres; `normal` is the unit vector from A to B; `impulse` is along the normal over the tick, in N
+     * s; `approachSpeed` is in m/s. */
     hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx; impulse: Fx })[];
     /** Shapes that began to overlap a sensor, sorted by `fraction`. */
     sensorBegin: SensorEvent[];
@@ -714,30 +721,33 @@ export class World extends Edits {
     clone(): World;
     /** Adds a body, and returns its handle. */
     spawn(options: BodyOptions): BodyId;
-    /** Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
-     * definition once. */
+    /** Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
+     * A recording stores the definition only once. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: readonly BodyPose[]): BodyId[];
     /** Adds a shape to a body, and returns its handle. */
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
     /** Adds a joint, and returns its handle. */
     addJoint(options: JointOptions): JointId;
-    /** Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. */
+    /** Adds a joint between each pair of bodies, all with one definition. If the world refuses one of the joints, it
+     * adds none of them. */
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: readonly (readonly [BodyId, BodyId])[]): JointId[];
-    /** Advances the world by some ticks, 1 by default, and keeps the events of the last one. */
+    /** Advances the world by a number of ticks, 1 by default. Afterwards, `events` returns the events of the last
+     * tick. */
     step(ticks?: number): void;
-    /** Executes a list of commands, and returns the number of refused commands. The list is kept. */
+    /** Executes a list of commands, and returns the number of commands that the world refused. The list keeps its
+     * commands. */
     execute(commands: Commands): number;
     /** Hash of the state: 32 hexadecimal digits. */
     hash(): string;
-    /** Hash of a section: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands,
-     * 6 random numbers. */
+    /** Hash of one section of the state. `section` is 0 (settings, tick and fault count), 1 (bodies), 2 (shapes), 3
+     * (joints), 4 (contacts), 5 (islands), or 6 (random number generator). */
     digest(section: number): string;
     /** Number of ticks. `restore` and `fromBytes` set the saved number. */
     readonly tick: number;
-    /** Number of clamped results of the solver, plus one for every tick in which `pairLimit` left pairs out. A body at
-     * the speed limit does not count. */
+    /** Number of results that the solver has clamped to their range, plus one for every tick with more pairs than
+     * `pairLimit`. Limiting a body to `speedMax` does not count. */
     readonly faults: number;
-    /** `pairs` are pairs of near shapes. */
+    /** `pairs` counts pairs of shapes with overlapping fat AABBs. */
     counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
     config(): ConfigInfo;
     /** Changes the given settings. A different limit throws `FIXED_SETTING`. */
@@ -769,28 +779,31 @@ export class World extends Edits {
     sensorOverlaps(shape: ShapeId): ShapeId[];
     /** Body and definition of a shape. */
     shape(shape: ShapeId): ShapeInfo;
-    /** A box around a shape, with a margin, in metres in the world. */
+    /** The fat AABB of a shape: its axis-aligned bounding box in the world with a margin, in metres. */
     shapeBox(shape: ShapeId): { lower: Vec2; upper: Vec2 };
-    /** Distance in metres, negative if the shapes overlap. Undefined if one is disabled or not in the world. */
+    /** Distance in metres, negative if the shapes overlap. Undefined if one of the shapes is disabled or not in the
+     * world. */
     shapeDistance(a: ShapeId, b: ShapeId): Fx | undefined;
     joint(joint: JointId): JointInfo;
     /** In the world, in metres. */
     jointAnchors(joint: JointId): [Vec2, Vec2];
-    /** Angle in rad, including whole turns. Undefined if the joint is not in the world. */
+    /** Angle of the joint's frame on B relative to its frame on A in rad, including whole turns. Undefined if the joint
+     * is not in the world. */
     jointAngle(joint: JointId): Fx | undefined;
     /** Force in N on body B in the last sub-step, and torque in N m about B's anchor. Undefined if the joint is not in
      * the world. */
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
-    /** For drawing, five floats for each enabled body: handle, x, y, angle in radians, and 1 if awake, otherwise 0. If
-     * `target` is long enough, the floats are written to it, and the result is a part of it. */
+    /** For drawing, five floats for each enabled body: handle, x and y in metres, angle in radians, and 1 if the body
+     * is awake, otherwise 0. If `target` is long enough, the floats are written to `target`, and the result is a view
+     * of them. */
     poses(target?: Float64Array): Float64Array;
-    /** The events of the last tick: after `step(120)`, those of the 120th. */
+    /** The events of the last tick: after `step(120)`, those of the 120th tick. */
     events(): Events;
-    /** The first shape that a ray meets on a translation in metres. */
+    /** The first shape that a ray from `origin` to `origin` plus `translation` meets, in metres. */
     castRay(origin: Vec, translation: Vec, filter?: Filter): RayHit | undefined;
-    /** Every shape that a ray meets, in order. */
+    /** Every shape that a ray meets, in order along the ray. */
     castRayAll(origin: Vec, translation: Vec, filter?: Filter): RayHit[];
-    /** The first shape that a given shape meets on a translation in metres. */
+    /** The first shape of the world that `shape` meets when it moves from `position` by `translation`, in metres. */
     castShape(shape: ShapeDef, position: Vec, translation: Vec, options?: Filter & { angle?: Rotation }): CastHit | undefined;
     /** Shapes that overlap a given shape, in slot order. */
     overlapShape(shape: ShapeDef, position: Vec, options?: Filter & { angle?: Rotation }): ShapeId[];
@@ -818,9 +831,9 @@ export interface MoverOptions {
 export interface MoverPlane {
     shape: ShapeId;
     body: BodyId;
-    /** Origin of the body at that time, in metres. */
+    /** Origin of the body when the character met the surface, in the world, in metres. */
     bodyPosition: Vec2;
-    /** Rotation of the body at that time. */
+    /** Rotation of the body when the character met the surface. */
     bodyAngle: Angle;
     /** Velocity of the surface in m/s. */
     velocity: Vec2;
@@ -835,11 +848,12 @@ export interface MoverPlane {
 export interface MoverState {
     /** Position of the shape's centre in the world, in metres. */
     position: Vec;
-    /** In m/s: relative to the ground on which the character stands, otherwise in the world. */
+    /** In m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     velocity?: Vec;
     /** The ground on which the character stands; undefined in the air. */
     ground?: MoverPlane | undefined;
-    /** Whether the character is inside a shape that is solid from one side, and passes on until it is out of it. */
+    /** Whether the character is inside a shape that is solid from one side only, and passes through until it has left
+     * the shape. */
     isPassing?: boolean;
 }
 export interface Moved {
@@ -847,29 +861,31 @@ export interface Moved {
     state: {
         /** Position of the shape's centre in the world, in metres. */
         position: Vec2;
-        /** In m/s: relative to the ground on which the character stands, otherwise in the world. */
+        /** In m/s: relative to the ground while the character stands on ground, otherwise in the world. */
         velocity: Vec2;
         ground: MoverPlane | undefined;
         /** Whether there is a `ground`. */
         isOnGround: boolean;
         /** Whether the character is wedged between two slopes that are too steep to stand on. */
         isWedged: boolean;
-        /** Whether the character is inside a shape that is solid from one side, and passes on until it is out of it. */
+        /** Whether the character is inside a shape that is solid from one side only, and passes through until it has
+         * left the shape. */
         isPassing: boolean;
     };
-    /** The surfaces met, in order. */
+    /** The surfaces that the character has met, in order. */
     met: MoverPlane[];
 }
 /** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and is carried by moving
- * ground. The game adds gravity to the velocity. Call it after `step`. Sensors, areas and events do not notice a
- * character: use `overlapShape` with `sensors: true`, or let a kinematic body follow it that the filter leaves out. */
+ * ground. The game adds gravity to the velocity. Call `moveCharacter` after `step`. Sensors, areas and events do not
+ * notice a character. To find sensors, use `overlapShape` with `sensors: true`. To trigger events, let a kinematic body
+ * follow the character, and leave this body out by `except` of the filter. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** Encodes the state of a character, for saves and hashes. */
 export function encodeMoverState(state: MoverState): Uint8Array;
 export function decodeMoverState(bytes: Uint8Array): Moved["state"];
 
-/** Bounds on the cost of a replay. With the defaults, which allow a day of play, a file made to be slow can take hours
- * to verify: a server should set narrower limits. */
+/** Bounds on the cost of a replay. The defaults allow a day of play. With them, a malicious file can take hours to
+ * verify: a server should set narrower limits. */
 export interface Limits {
     /** Bytes of the file: 64 MiB by default. */
     fileBytes?: number;
@@ -877,7 +893,7 @@ export interface Limits {
     setupBytes?: number;
     /** Number of players: 64 by default. */
     players?: number;
-    /** Bytes of a block: 16 MiB by default. */
+    /** Bytes of a block, which has the inputs between two checkpoints: 16 MiB by default. */
     blockBytes?: number;
     /** Ticks between checkpoints: 3600 by default. */
     blockTicks?: number;
@@ -898,7 +914,7 @@ export interface Verdict {
      * - `incomplete`: the file ends before its trailer, but is valid up to its end.
      * - `malformed`: the bytes are not a replay.
      * - `limit_exceeded`: the file exceeds one of the `Limits`.
-     * - `unverifiable`: recorded with another version of the engine, or other rules. */
+     * - `unverifiable`: the file was recorded with another version of the engine, or with other rules. */
     verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
     /** Ticks played, for `match`, `claim_mismatch` and `incomplete`; tick of the first checkpoint that differs, for
      * `diverged`; otherwise 0. */
@@ -934,10 +950,11 @@ export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 /** A world whose inputs are lists of commands, recorded while it runs. */
 export class Recording extends Handle {
     #private;
-    /** `setup` has the commands that build the world; a refused one throws. Its bodies have the handles 0, 1, 2 and so
-     * on. There is a checkpoint every `interval` ticks, 1 to 3600: 60 by default. */
+    /** `setup` has the commands that build the world. The constructor throws if the world refuses one of them. The
+     * bodies of `setup` have the handles 0, 1, 2 and so on. There is a checkpoint every `interval` ticks, 1 to 3600: 60
+     * by default. */
     constructor(options: { config?: ConfigOptions; setup: Commands; interval?: number });
-    /** Executes and empties the list, and advances the world by a tick. Refused commands are skipped. */
+    /** Executes and empties the list, and advances the world by a tick. Skips commands that the world refuses. */
     step(commands: Commands): void;
     /** A copy of the world, to be disposed of by the caller. */
     world(): World;
@@ -974,10 +991,10 @@ export class Recorder extends Handle {
         interval?: number;
     });
     /** Records the inputs of all players, and a bit for each absent player, whose input has to be zeros.
-     * `Match.finalInputs` returns both. Returns whether `checkpoint` has to follow. */
+     * `Match.finalInputs` returns these two values. `record` returns whether `checkpoint` has to follow. */
     record(inputs: Uint8Array, absent?: bigint): boolean;
     /** Adds a result such as a score, with a name of 1 to 64 bytes. A replay has at most 256 results, with different
-     * names. They can be read without playing the replay. */
+     * names. The results can be read without playing the replay. */
     claim(name: string, number: number | bigint): void;
     /** Passes the hash of the state after the last recorded tick. */
     checkpoint(hash: string): void;
@@ -999,33 +1016,33 @@ export class Replay extends Handle {
     readonly ticks: number;
     /** Data from which the game makes its first state. */
     readonly setup: Uint8Array;
-    /** Results stated by the file, true if the verdict is `match`. */
+    /** Results in the file, verified only if the verdict is `match`. */
     readonly claims: Map<string, bigint>;
     /** The inputs of the next tick; undefined at the end. */
     next(): TickInputs | undefined;
     /** Compares a state hash with the file. Call it before the first tick and after every tick, or, while seeking, for
      * each request `checksum`. */
     check(hash: string): void;
-    /** Adds a result of the game that was played, which the verdict compares with `claims`. */
+    /** Adds a result of the game that was simulated. The verdict compares these results with `claims`. */
     claim(name: string, number: number | bigint): void;
-    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state. */
+    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
     verdict(hash: string): Verdict;
     /** Starts seeking to a tick; `ReplayDriver` fulfils the requests. At the first call the game has to be in its first
      * state. */
     seek(tick: number): void;
-    /** The next request: `save`, `load`, `advance`, or `checksum`, which `check` answers. Throws `RECORD` if the game
-     * has diverged from the file. */
+    /** The next request: `save`, `load`, `advance`, or `checksum`, which `check` answers. Undefined when the tick is
+     * reached. Throws `RECORD` if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
-    /** Sets the interval in ticks of saved states while seeking: 60 by default, or a 256th of the replay if that is
+    /** Sets the interval in ticks at which seeking saves the state: 60 by default, or a 256th of the replay if that is
      * more. */
     setInterval(ticks: number): void;
 }
 /** A game. `save` and `hash` have to cover its whole state. */
 export interface ReplayGame<Saved = unknown> {
-    /** Advances by a tick, with the inputs of all seats, and a bit for each empty one. */
+    /** Advances by a tick, with the inputs of all seats, and a bit for each empty seat. */
     step(inputs: Uint8Array, absent: bigint): void;
     save(): Saved;
-    /** Restores a copy, which may be restored again. */
+    /** Restores a copy. The driver may restore the same copy again later. */
     load(saved: Saved): void;
     /** Frees a copy. */
     drop?(saved: Saved): void;
@@ -1042,10 +1059,10 @@ export class ReplayDriver<Saved = unknown> {
     readonly tick: number;
     /** Goes to a tick, from a saved state. Throws `RECORD` if the game diverges from the file. The driver then stays at
      * the checkpoint that differs, and only earlier ticks can be reached. An error of the game is thrown unchanged.
-     * After such an error, or if the replay was read without this driver, `seek` throws `VALUE` unless a saved state
-     * leads to the tick. */
+     * After such an error, or if the replay was read without this driver, `seek` reaches only ticks to which a saved
+     * state leads, and throws `VALUE` for other ticks. */
     seek(tick: number): void;
-    /** Goes forward by a tick, which is simulated. Returns false at the end. */
+    /** Goes forward by a tick. The game simulates this tick. Returns false at the end. */
     step(): boolean;
     /** Returns false at the start. */
     stepBack(): boolean;
@@ -1062,14 +1079,15 @@ export interface MatchOptions {
     seats: number;
     /** Number of seats of this peer: 1 by default; 0 for a spectator or a dedicated server. */
     ownSeats?: number;
-    /** Number of taken seats at which the match begins: 2 by default, or `seats` if that is less. That of the host
-     * counts. */
+    /** Number of taken seats at which the match begins: 2 by default, or `seats` if that is less. Seats of the host
+     * count. */
     startWith?: number;
     /** Bytes of an input, 1 to 512: 1 by default. */
     inputBytes?: number;
     /** Ticks a second, 1 to 1000: 60 by default. */
     tickRate?: number;
-    /** Ticks that may be played with guessed inputs, 0 to 32, chosen by each peer; 0, the default, is lockstep. */
+    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Peers may have different
+     * values. */
     guess?: number;
     /** Smallest delay of your own inputs in ticks: 0 by default. The delay follows the latency. */
     delayMin?: number;
@@ -1083,26 +1101,27 @@ export interface MatchOptions {
     history?: number;
     /** Minimum number of final ticks whose inputs are kept for peers that return: 36 000 by default. */
     logTicks?: number;
-    /** Ticks from the agreement that a peer joins to its first tick, besides three round trips: 8 by default. */
+    /** Ticks between the agreement that a peer joins and its first tick, in addition to three round trips: 8 by
+     * default. */
     seatLead?: number;
-    /** A peer may have a seat if it lags by at most this many ticks: 40 by default. */
+    /** A peer may get a seat if it lags by at most this many ticks: 40 by default. */
     seatWithin?: number;
     /** Packets with another tag are ignored. 0 by default. */
     matchTag?: bigint | number;
-    /** Milliseconds for which play waits for a missing peer: 2000 by default. */
+    /** Milliseconds for which the other peers wait for a missing peer before they go on without it: 2000 by default. */
     patience?: number;
     /** Number of this peer, of 32 bits: random by default. Use a new one each time the page is loaded. */
     peer?: number | undefined;
     /** Identity of the player, of 64 bits: random by default. A peer that joins with the same key gets its seat back,
-     * if that is free. */
+     * if the seat is free. */
     key?: bigint | undefined;
     /** Secret numbers of 64 bits against packets with forged addresses: random by default. */
     secret?: readonly [bigint, bigint] | undefined;
-    /** Data that all peers have to agree on, at most 512 bytes. A peer with a different offer is refused. By default
-     * `nativeOffer` of the options that have to be equal, without rules and setup. An offer of your own should contain
-     * those options as well. */
+    /** Data that all peers have to agree on, at most 512 bytes. A peer with a different offer is refused. The default
+     * is the `nativeOffer` of the options that have to be equal, without rules and setup. An offer of your own should
+     * contain these options as well. */
     offer?: Uint8Array | undefined;
-    /** Address of a participant of the match to join. Without it, a match is opened. */
+    /** Address of a participant of the match to join. Without `contact`, the constructor opens a match. */
     contact?: Uint8Array | undefined;
 }
 /** Status of a peer:
@@ -1112,12 +1131,13 @@ export interface MatchOptions {
  * - `watching`: follows the match without a seat.
  * - `waiting`: has a seat, or is a dedicated server, in a match that has not begun.
  * - `playing`: has a seat, or is a dedicated server, in a match that has begun.
- * - `paused`: hears no majority of the peers, directly or through others. Possible for a moment after joining.
+ * - `paused`: no messages of a majority of the peers arrive, directly or through others. Possible for a moment after
+ *   joining.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
  * - `kicked`: removed by a vote.
  * - `leaving`: announces its departure.
  * - `left`: has left, and still answers peers that lack packets.
- * - `finished`: all ticks are final, and this peer still answers peers. See `MatchDriver.ended`.
+ * - `finished`: all ticks are final, and this peer still answers other peers. See `MatchDriver.ended`.
  * - `closed`: sends nothing more; follows `left` and `finished` after some seconds. */
 export type MatchStatus =
     | "joining" | "watching" | "waiting" | "playing" | "paused" | "dropped" | "kicked" | "leaving" | "left" | "finished" | "closed"
@@ -1126,17 +1146,20 @@ export type MatchStatus =
  *
  * - `status`: the new `status`.
  * - `view`: voters, seats, start or end of the match have changed; `value` counts the changes.
- * - `seated`, `unseated`: from `tick` on, `peer` has or has lost `seat`.
- * - `waiting`: play stalls for inputs of `peer`; `value` is 1 if that peer is heard, directly or through others.
+ * - `seated`: from `tick` on, `peer` has `seat`. `unseated`: from `tick` on, `peer` no longer has `seat`.
+ * - `waiting`: play stalls, because inputs of `peer` are missing. `value` is 1 if messages of this peer still arrive,
+ *   directly or through other peers; otherwise 0.
  * - `resumed`: play continues.
  * - `pause`: `peer` requests a pause (`value` is 1) or withdraws its request (0).
  * - `end`: the match ends after `tick` ticks.
- * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
- * - `conflict`: `peer` has issued two different inputs for `tick`. The first to arrive counts.
- * - `tooFarBehind`: the other peers may have dropped inputs that this peer lacks. This peer has to join again.
+ * - `desync`: after `tick` ticks, the state of `peer` has the hash `theirs`, and the state of this peer the hash
+ *   `ours`.
+ * - `conflict`: `peer` has issued two different inputs for `tick`. The input that arrived first counts.
+ * - `tooFarBehind`: this peer is so far behind that the others may have dropped inputs that it lacks. It has to join
+ *   again.
  * - `refused`: the contact refuses the request to join, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks, to be loaded before the next request.
- * - `badState`: a downloaded state is not valid, and is requested again. */
+ * - `badState`: a downloaded state is not valid. This peer requests the state again. */
 export interface MatchEvent {
     kind:
         | "status" | "view" | "seated" | "unseated" | "waiting" | "resumed" | "pause" | "end" | "desync" | "conflict" | "tooFarBehind"
@@ -1174,8 +1197,8 @@ export interface MatchRequest {
     /** Bit for each seat whose input is guessed. */
     guessed: bigint;
 }
-/** One participant of a match. Inputs, states and packets are bytes. `now` is in milliseconds and must not decrease, as
- * `performance.now()`. `MatchDriver` fulfils the requests. Misuse is a `Lockstep2dError`. While the status is
+/** One participant of a match. Inputs, states and packets are bytes. `now` is in milliseconds and must not decrease,
+ * like `performance.now()`. `MatchDriver` fulfils the requests. Misuse is a `Lockstep2dError`. While the status is
  * `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`, `link`, `advance`, `reportHash`, `leave`,
  * and all functions below `leave`. */
 export class Match extends Handle {
@@ -1183,18 +1206,19 @@ export class Match extends Handle {
     /** Opens a match, or joins one through a `contact`. An option out of range throws `CONFIG` or `VALUE`. */
     constructor(options: MatchOptions);
     readonly inputBytes: number;
-    /** Sends the request to join to this participant. */
+    /** Requests to join a match through this participant. Discards a match in progress. */
     ask(contact: Uint8Array): void;
-    /** Takes a packet from an address. Foreign packets and those of more than 2048 bytes are ignored. */
+    /** Processes a packet that arrived from an address. Ignores packets that do not belong to the match, and packets of
+     * more than 2048 bytes. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`. Call it every few milliseconds, and after `receive`. */
     update(now: number): void;
     /** Whether the next tick is due, and the match can take its inputs. */
     isDue(now: number): boolean;
     /** Issues the inputs of your own seats in order, and plays a tick if possible. Returns whether the inputs were
-     * issued. If not, they may be passed again. Inputs that were issued count for one tick: forget key presses then.
-     * While the input delay grows, `isDue` remains true, and further calls ask for the inputs of the additional ticks
-     * before a tick is played. */
+     * issued; otherwise the same inputs may be passed again. Issued inputs count for one tick, so clear recorded key
+     * presses then. While the input delay grows, `isDue` remains true, and each further call takes the inputs of one
+     * more tick before the next tick is played. */
     advance(now: number, inputs: Uint8Array): boolean;
     nextRequest(): MatchRequest | undefined;
     /** Passes the hash for a request `checksum`. */
@@ -1209,24 +1233,24 @@ export class Match extends Handle {
     /** Numbers of ticks: `played` ticks were played, `final` ticks have final inputs, and `confirmed` ticks were played
      * with final inputs. */
     ticks(): { played: number; final: number; confirmed: number };
-    /** The final inputs of all seats for a tick; undefined if the tick is not final yet or they are no longer kept. */
+    /** The final inputs of all seats for a tick; undefined if they are not final yet or no longer stored. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats of this peer, in ascending order. */
     readonly seats: number[];
-    /** The path to a peer: smoothed round trip `ping` in milliseconds (0 if none was measured), lost share of about the
-     * last 64 packets, and delay of your own inputs in ticks. Undefined if there is no such peer. */
+    /** The network path to a peer: smoothed round trip `ping` in milliseconds (0 if none was measured), lost share of
+     * about the last 64 packets, and delay of your own inputs in ticks. Undefined if there is no such peer. */
     link(peer: number): { ping: number; loss: number; delay: number } | undefined;
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
-    /** Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+    /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
      * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
      * back: decide by a state of a confirmed tick (`ticks().confirmed`). */
     endAt(ticks: number): void;
-    /** Tells the other peers that this one requests a pause, or no longer does. The match plays on. */
+    /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on. */
     pause(paused: boolean): void;
     /** Votes for going on without a missing peer. */
     goOnWithout(peer: number): void;
-    /** Votes for removing the player with this key, while this peer has a vote. */
+    /** Votes for removing the player with this key. The vote counts only while this peer is a voter. */
     kick(key: bigint): void;
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
@@ -1234,8 +1258,8 @@ export class Match extends Handle {
 /** A game for `MatchDriver`. `encode` and `decode` are for peers that join. */
 export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
-    /** Replaces the state by one from bytes, which may come from any source. Decode the bytes before you free the old
-     * state: it has to stay if the bytes are not valid. */
+    /** Replaces the state by an encoded state, which may come from any source. Decode the bytes before you free the old
+     * state, because the old state has to stay if the bytes are not valid. */
     decode(bytes: Uint8Array): void;
 }
 /** Plays a game in a match: saves, restores and advances it as the match requests. */
@@ -1253,10 +1277,11 @@ export class MatchDriver<Saved = unknown> {
     readonly sendError: unknown;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
-     * returns the inputs of your own seats in order, and each result counts for one tick: forget key presses then. It
-     * is called several times while the input delay grows. Returns the events. For an event `state`, the game has already
-     * decoded the state. After an error of the game, every further call throws that error. An error of `readInputs`
-     * is thrown once; the next call continues, and returns the events of this one as well. */
+     * returns the inputs of your own seats in order. Each result counts for one tick, so clear recorded key presses in
+     * it. While the input delay grows, an update calls `readInputs` several times. Returns the events. For an event
+     * `state`, the game has already decoded the state. After an error of the game, every further call throws that
+     * error. An error of `readInputs` is thrown once. The next call continues the match, and also returns the events of
+     * the call that threw the error. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
@@ -1283,25 +1308,25 @@ export function encodeNativeState(world: World): Uint8Array;
 export function decodeNativeState(bytes: Uint8Array): World;
 
 /** A member of a room of a relay (`crates/relay`), which carries packets over a WebSocket. It reconnects when the
- * connection is lost or the relay does not answer for 15 seconds; packets are lost meanwhile. */
+ * connection is lost or the relay does not answer for 15 seconds. Packets are lost in the meantime. */
 export class Relay {
     #private;
     private constructor();
     /** Enters a room, and creates it if necessary. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
      * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. Node before 22
-     * needs `WebSocket`. Throws `RELAY` if the relay refuses the connection or does not answer within ten seconds, or if
-     * the page cannot open the URL, as `ws://` in a page loaded over https. */
+     * needs the option `WebSocket`. Throws `RELAY` if the relay refuses the connection or does not answer within ten
+     * seconds, or if the page cannot open the URL, such as `ws://` in a page loaded over https. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array | undefined; WebSocket?: unknown }): Promise<Relay>;
     /** Address of this member. */
     readonly own: Uint8Array;
     /** Addresses of the other members, in the order in which they entered. */
     readonly others: Uint8Array[];
-    /** Whether there is a connection. A lost one is opened again, unless `isClosed`. */
+    /** Whether there is a connection. `Relay` opens a lost connection again, unless `isClosed`. */
     readonly isOpen: boolean;
     /** Whether the connection has ended for ever: after `close`, or because the same `secret` has entered the room
      * again, for example in a duplicate of the tab. */
     readonly isClosed: boolean;
-    /** Called with sender and bytes of each packet. */
+    /** Called with the sender and the bytes of each packet. */
     onPacket: (from: Uint8Array, packet: Uint8Array) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers: (others: Uint8Array[]) => void;

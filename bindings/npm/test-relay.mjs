@@ -3,7 +3,7 @@
 // The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
 // Node and a native one play 3000 ticks. The first peer in Node is paused for five seconds, and the second is restarted
 // with its key. All three end with the same hash. The peers that play from the first tick write equal replays, which
-// verify. Meanwhile, a member of another room sends nothing and keeps its connection.
+// `lockstep2d verify` accepts. Meanwhile, a member of another room sends nothing and keeps its connection.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -39,7 +39,7 @@ const FOLDER = fileURLToPath(new URL("tests/relay/", import.meta.url));
 const node = (name, ...args) => start(process.execPath, ...flags, join(FOLDER, `${name}.mjs`), ...args);
 const peer = (...args) => node("peer", ...args);
 
-/** The hash of a sandbox, which also covers the number of refused commands, here 0. */
+/** The hash of a `Sandbox` (Rust), which also covers the number of refused commands, here 0. */
 function sandboxHash(world) {
     const bytes = (digits) => Buffer.from(digits, "hex").reverse();
     return L.hashBytes(Buffer.concat([bytes(world), bytes(L.hashBytes(new Uint8Array(8)))]));
@@ -52,7 +52,7 @@ async function play() {
     const silent = node("silent", address);
     const file = (name) => join(folder, `${name}.replay`);
     const native = start(pushProgram, address, CODE, "--ticks", String(TICKS), "-o", file("native"));
-    // The first in the room opens the match.
+    // The first member of the room opens the match.
     await native.first();
     const paused = peer(address, CODE, "1", "--pause-at", "700", "-o", file("paused"));
     // Peers that play from the first tick write a replay.

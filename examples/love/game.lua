@@ -82,7 +82,7 @@ function Game:drop(saved)
 end
 
 function Game:hash()
-    -- Not an item of `ls.out("hash")`, which would be a reference to memory that LuaJIT frees.
+    -- `ls.out("hash")[0]` would be a reference into an array that LuaJIT may free after this function.
     local hash = ffi.new("ls2d_hash")
     ls.world_hash(self.world, hash)
     return hash

@@ -14,7 +14,7 @@ local Game = require("game")
 
 -- Pixels per metre.
 local SCALE = 40
--- Capacity in bodies.
+-- Capacity of `rows`, in bodies.
 local ROWS = 64
 
 local game, driver, udp, options, final_hash
@@ -88,7 +88,7 @@ function love.update()
     end
     local status = driver:status()
     local _, final = driver:ticks()
-    -- Ticks with final inputs may not be played yet.
+    -- Some ticks with final inputs may not be played yet.
     if status == ls.MATCH_FINISHED and driver.tick == final and not final_hash then
         final_hash = ls.hex(game:hash())
         print(("%d ticks: %s"):format(driver.tick, final_hash))
@@ -137,7 +137,8 @@ end
 
 local leaving = false
 
--- The window closes when the others have the inputs of this player, or at once when it is closed again.
+-- Closing the window leaves the match: the window stays open until the others have the inputs of this player. Closing
+-- it again ends the program at once.
 function love.quit()
     if leaving then
         return false

@@ -1,5 +1,5 @@
 /* A pit of shapes in an SDL window. Arrow keys push the dark ball, a click is an explosion, Escape quits. Every game is
- * recorded: `lockstep2d verify pit.replay` plays it again and compares the states.
+ * recorded: `lockstep2d verify pit.replay` plays the recording and compares the states.
  *
  *   pit [--replay FILE] [--ticks N] [--screenshot FILE.bmp]
  */
@@ -122,7 +122,7 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
     }
 }
 
-/* ---- Drawing: nothing drawn enters the world ---- */
+/* ---- Drawing: floats, which never enter the world ---- */
 
 /* Writes the corners of a shape in metres from its centre. Returns their number; 0 for a shape without area. */
 static int outline(const ls2d_shape_def *shape, SDL_FPoint *corners) {
@@ -243,7 +243,7 @@ int main(int argc, char **argv) {
     size_t count;
     SDL_Window *window;
     SDL_Renderer *renderer;
-    /* A click waits for the next tick, because some iterations of the loop play none. */
+    /* A click waits for the next tick, because some iterations of the loop play no tick. */
     SDL_Point click;
     int i, is_click = 0, is_over = 0;
 
@@ -287,7 +287,7 @@ int main(int argc, char **argv) {
             }
         }
         if (ticks_max == UINT64_MAX) {
-            /* 60 ticks a second. If more than six are due, as after a pause, they are skipped. */
+            /* 60 ticks a second. If more than six ticks are due, as after a pause, the program skips them. */
             const uint64_t due = SDL_GetTicks64() * 60 / 1000 - skipped;
             if (due > ticks + 6) {
                 skipped += due - ticks;

@@ -1,4 +1,5 @@
-//! The game of several examples: two players push one ball. Its claim is the x coordinate of the ball, in whole metres.
+//! The game of several examples: two players push one ball. The claim in its replays is the x coordinate of the ball,
+//! in whole metres.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;

@@ -1,8 +1,8 @@
-// WebRTC data channels between the members of a room. The relay carries the signals, and packets between members
-// without an open channel.
+// WebRTC data channels between the members of a room. The relay carries the signals (offers, answers and candidates),
+// and packets between members without an open channel.
 //
-// A channel is unordered and does not resend lost packets. Packets over a channel use the addresses of the relay, too.
-// A signal is JSON after a prefix with which no packet of a match begins.
+// A channel is unordered and does not resend lost packets. A member has the same address over a channel as over the
+// relay. A signal is JSON after a prefix with which no packet of a match begins.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Members in different networks need a STUN server: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
@@ -80,7 +80,7 @@ export class Direct {
         const connection = new RTCPeerConnection(CONFIG);
         const channel = connection.createDataChannel("match", CHANNEL);
         channel.binaryType = "arraybuffer";
-        // A text is no packet. Converted to a number, it would be the length of an array.
+        // A text message is no packet: `new Uint8Array` would convert the text to a number, and use it as a length.
         channel.onmessage = ({ data }) => data instanceof ArrayBuffer && this.onPacket(address, new Uint8Array(data));
         connection.onicecandidate = ({ candidate }) => candidate && this.#signal(address, { candidate });
         connection.onconnectionstatechange = () => ["failed", "closed"].includes(connection.connectionState) && this.#drop(address);
@@ -90,7 +90,7 @@ export class Direct {
     }
 
     async #call(address) {
-        // `setLocalDescription` creates an answer if an offer was received.
+        // `setLocalDescription` creates an offer, or an answer if this member has received an offer.
         const { connection } = this.#link(address);
         await connection.setLocalDescription();
         this.#signal(address, { description: connection.localDescription });

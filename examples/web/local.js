@@ -8,7 +8,7 @@ const KEYS = [{ KeyA: 1, KeyD: 2, KeyW: 4 }, { ArrowLeft: 1, ArrowRight: 2, Arro
 const pressed = new Set();
 addEventListener("keydown", ({ code }) => pressed.add(code));
 addEventListener("keyup", ({ code }) => pressed.delete(code));
-// Keys that are released in another window are not reported.
+// A page gets no event for a key that is released while another window has the focus.
 addEventListener("blur", () => pressed.clear());
 const pad = (seat) => Object.entries(KEYS[seat]).reduce((bits, [code, bit]) => bits | (pressed.has(code) ? bit : 0), 0);
 

@@ -7,7 +7,7 @@ const KEYS = { KeyA: 1, KeyD: 2, KeyW: 4, ArrowLeft: 1, ArrowRight: 2, ArrowUp: 
 const pressed = new Set();
 addEventListener("keydown", ({ code }) => pressed.add(code));
 addEventListener("keyup", ({ code }) => pressed.delete(code));
-// Keys that are released in another window are not reported.
+// A page gets no event for a key that is released while another window has the focus.
 addEventListener("blur", () => pressed.clear());
 const pad = () => [...pressed].reduce((bits, code) => bits | (KEYS[code] ?? 0), 0);
 
@@ -47,7 +47,7 @@ function save() {
     link.href = URL.createObjectURL(new Blob([player.recording.finish()]));
     link.download = "push.replay";
     link.click();
-    // The recording has ended, also if the match has not.
+    // Saving ends the recording, even if the match goes on.
     element("save").textContent = `Save the replay of ${player.recording.ticks} ticks`;
 }
 

@@ -4,8 +4,8 @@ import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
 import { MatchRecording } from "./recording.js";
 
-// Identity in a room, kept in the session storage: a page that is reloaded gets its seat back. But when the host of two
-// players is reloaded, both pages pause, because the other one alone has no majority.
+// The identity in a room is in the session storage, so that a page that is reloaded gets its seat back. But if the host
+// of a match of two players reloads the page, both pages pause, because the other player alone has no majority.
 function identity(code) {
     const name = `lockstep2d ${code.toUpperCase()}`;
     const stored = sessionStorage.getItem(name);

@@ -1,4 +1,4 @@
-//! Calls of the flat API with right and wrong arguments. See `lockstep2d_flat::fuzzing`.
+//! Calls of the flat API with valid and invalid arguments. See `lockstep2d_flat::fuzzing`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Reports as written, changed and forged, compared. See `reports`.
+//! Comparison of correct, changed and forged reports. See `reports`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -13,7 +13,7 @@ use crate::source::Source;
 
 /// Maximum cost of a run: [`generator::cost`] plus `n * n / 64` with `n` shapes, summed over the ticks.
 const COST_MAX: u64 = 120_000;
-/// From this number of shapes on, no bodies are added, because brute force compares all pairs.
+/// A crowd of this number of shapes grows no further, because brute force compares all pairs.
 const SHAPES_MAX: usize = 600;
 
 /// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.
@@ -82,7 +82,7 @@ impl Crowd {
             1 => ShapeDef::new(Geometry::Circle { radius: source.thousandths(2, 3000) }),
             _ => shapes::ordinary_shape(source),
         };
-        // Sensors cost the solver no work.
+        // Half of the crowds are sensors, which save the time of the solver.
         shape.sensor = source.one_in(2);
         let reaches = [fx!(10), fx!(3), fx!(30), fx!(300), fx!(100000), fx!(1000000000)];
         let kind = source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Fixed]);
@@ -158,7 +158,7 @@ impl Crowd {
         let reach = self.reach;
         let mut position = Vec2::new(self.rng.range(-reach, reach), self.rng.range(-reach, reach));
         if self.rng.chance(1, 8) {
-            // Places bodies in rows and columns, so that boxes share bounds.
+            // Rounded positions form rows and columns, so that AABBs have equal bounds.
             position = Vec2::new(self.rng.range(fx!(-4), fx!(4)).round(), position.y.round());
         }
         BodyPose {

@@ -83,7 +83,7 @@ fn wild_config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// New settings for a world, mostly with its present limits.
+/// New settings for a world, which usually keep its limits of bodies, shapes, joints and pairs.
 fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
     let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
     let config = wild_config(source);
@@ -165,7 +165,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // The target is mostly within reach of a kinematic body in one tick.
+                // A kinematic body can usually reach the target in one tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -313,7 +313,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A change of a joint. The world refuses it if it changes the bodies of the joint.
+    /// A command that changes a joint. The world refuses the command if it names other bodies than the joint has.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);

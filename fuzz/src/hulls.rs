@@ -24,7 +24,7 @@ pub fn run(bytes: &[u8]) -> bool {
     let mut others = points.clone();
     Rng::new(source.word()).shuffle(&mut others);
     others.extend_from_slice(&points[..source.below(points.len() + 1)]);
-    // If there are several errors, the order decides which one is reported.
+    // Errors are not compared: if there are several, the order of the points decides which one is reported.
     assert_eq!(
         found.as_ref().ok(),
         Polygon::hull(&others).as_ref().ok(),
@@ -80,7 +80,7 @@ fn cross(a: Point, b: Point, c: Point) -> BigInt {
     difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x)
 }
 
-/// The edges by the definition.
+/// The edges, found by the definition.
 fn slow_hull(points: &[Point]) -> Vec<(Point, Point)> {
     let mut edges = Vec::new();
     for &a in points {
@@ -102,14 +102,14 @@ fn is_between(c: Point, a: Point, b: Point) -> bool {
     (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
 }
 
-/// Whether an edge is more than one unit longer than the minimum. Its rounded length is then legal.
+/// Whether an edge is more than one unit longer than the minimum. If so, its rounded length is legal, too.
 fn length_is_legal(a: Point, b: Point) -> bool {
     let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
     let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
     square > BigInt::from(EDGE_MIN + 1).pow(2)
 }
 
-/// Checks that a normal is perpendicular to its edge within rounding, and points to the right.
+/// Checks that a normal is perpendicular to its edge within rounding, and points outwards, to the right of the edge.
 fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
     let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
     let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());

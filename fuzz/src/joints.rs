@@ -150,7 +150,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
     joint
 }
 
-/// A joint kind for neighbours with anchors at one point, with mostly moderate parameters.
+/// A joint kind for neighbouring bodies whose anchors are at the same point. Most parameters are moderate.
 pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);

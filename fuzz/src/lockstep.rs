@@ -203,7 +203,7 @@ impl Variants {
                 Ok(_) => seen.done += 1,
                 Err(error) => {
                     seen.refused += 1;
-                    // The second world has not executed the command.
+                    // The second world has not executed the command, so it has the state before the command.
                     let changed = plain.digest().differing(&other.digest());
                     assert!(
                         changed.is_empty(),
@@ -239,7 +239,7 @@ struct Rollback {
 }
 
 impl Rollback {
-    /// Restores the state, with the caches of a later tick, and plays the ticks again.
+    /// Restores the state in a world that keeps the caches of a later tick, and plays the ticks again.
     fn repeat(self, world: &mut World) {
         world.restore(&self.save);
         for (commands, hash, events) in &self.ticks {
@@ -286,7 +286,7 @@ struct Total {
     faulty: [u64; 2],
 }
 
-/// Adds a run to the statistics, printed every 100 runs with `FUZZ_FIGURES`.
+/// Adds a run to the statistics. If the environment variable `FUZZ_FIGURES` is set, prints them every 100 runs.
 pub fn count(seen: Seen) {
     let Ok(mut total) = TOTAL.lock() else { return };
     total.runs += 1;

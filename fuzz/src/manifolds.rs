@@ -12,8 +12,8 @@ use crate::source::Source;
 /// A point in units of 2^-32 m.
 type Point = [BigInt; 2];
 
-/// Maximum error of a separation in micrometres: 500, because a face of B is chosen only if it is better than the best
-/// face of A by more than that; 500, because outlines up to that far apart count as touching; and 1 for rounding.
+/// Maximum error of a separation in micrometres: 500 + 500 + 1. A face of B is chosen only if it is better than the
+/// best face of A by more than 500. Outlines up to 500 apart count as touching. Rounding adds 1.
 const CONTACT_ERROR: i64 = 1_001;
 /// Maximum error of a distance in micrometres: 20 nm, and 240 nm from rounding a rotated vertex.
 const DISTANCE_ERROR: i64 = 1;

@@ -171,7 +171,7 @@ impl Match {
                 changed
             }
         };
-        // An attacker that cannot forge repeats an unchanged packet only from its original sender.
+        // An attacker that cannot forge checksums sends an unchanged packet only from the port of its original sender.
         let from = if !self.forges && packet == heard { sender } else { from };
         if self.forges {
             repair(0, &mut packet);

@@ -1,5 +1,5 @@
-//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. About one scene in five
-//! hundred still reaches a clamp, for example when a chain is spawned across a pile.
+//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. In about one scene in
+//! five hundred, a value is still clamped, for example when a chain is spawned across a pile.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;

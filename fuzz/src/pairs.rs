@@ -1,5 +1,5 @@
-//! Two shapes at changing relative positions. Their contact must not depend on caches or on SIMD. Except for ties, it
-//! must not depend on the order of the shapes either.
+//! Two shapes at changing relative positions. Their contact must not depend on caches or on SIMD. Except for ties, the
+//! contact must not depend on the order of the shapes either.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,9 +11,9 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference in metres between two separations, or between a separation and a distance: 0.5 mm, because a face
-/// of the second shape is chosen only if it is better than the best face of the first by more than that; 0.5 mm,
-/// because outlines up to that far apart count as touching; and 1 µm for rounding.
+/// Maximum difference in metres between two separations, or between a separation and a distance: 0.5 mm + 0.5 mm +
+/// 1 µm. A face of the second shape is chosen only if it is better than the best face of the first by more than 0.5 mm.
+/// Outlines up to 0.5 mm apart count as touching. Rounding adds 1 µm.
 const ERROR: Fx = fx!(0.001001);
 /// Maximum difference in metres between the distances of A from B and of B from A: twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
@@ -41,7 +41,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let new_swapped = Pair::new(config, still, moving, true)?;
     let (mut first, mut bare) = (new.clone(), new.clone());
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
-    // This world tests boxes one pair at a time. The other worlds may use SIMD lanes.
+    // This world tests AABBs one pair at a time. The other worlds may use SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
     assert!(scalar, "every machine has the scalar backend");
     let mut contacts = 0;
@@ -118,7 +118,7 @@ impl Pair {
 
     fn place(&mut self, position: Vec2<Fx>, angle: Angle) {
         let [_, moving] = self.bodies;
-        // The world refuses a position beyond its end. The body then stays.
+        // If the position is beyond the end of the world, the world refuses it and the body stays.
         let _ = self.world.set_transform(moving, position, angle);
         self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
@@ -130,7 +130,7 @@ impl Pair {
     }
 }
 
-/// Checks that exchanging the shapes does not change their distance, and reverses the normal if they are apart.
+/// Checks that exchanging the shapes keeps their distance and, if they are apart, reverses the normal.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };

@@ -55,13 +55,13 @@ pub fn run(bytes: &[u8]) -> u64 {
     answers
 }
 
-/// One world with three broad phases. Two of the broad phases have a history.
+/// One world with three broad phases. `brute_force` is a new copy, and the other two have the history of the scene.
 struct Questions<'a> {
     world: &'a World,
     sweep: &'a World,
     brute_force: World,
     filter: QueryFilter,
-    /// Whether rounding errors are small.
+    /// Whether the scene is ordinary. Rounding errors are small then.
     ordinary: bool,
 }
 
@@ -120,7 +120,7 @@ impl Questions<'_> {
         answer
     }
 
-    /// The shapes that a query can find, by its filter.
+    /// The shapes that a query with this filter can find.
     fn seen(&self) -> impl Iterator<Item = ShapeId> {
         self.world.shapes().filter_map(|(id, shape)| {
             let (filter, own) = (self.filter, shape.filter());
@@ -305,8 +305,8 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Checks that a cast stops where it touches, and passes no shape. `distance` gives the distance of a shape at a
-    /// fraction.
+    /// Checks that a cast stops where it touches, and passes no shape. `distance` gives the distance of a shape from
+    /// the probe at a fraction of the cast.
     fn check_cast(&self, hit: Option<CastHit>, distance: impl Fn(Fx, ShapeId) -> Fx) {
         let touched_before = |shape| distance(Fx::ZERO, shape) <= TOLERANCE;
         if let Some(hit) = hit {

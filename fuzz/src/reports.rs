@@ -55,12 +55,12 @@ struct Trajectory {
     interval: u32,
 }
 
-/// Compares the reports of two peers. The first peer may have diverged or forged its report, and the second has
-/// followed the rules. Returns the result as one word.
+/// Compares the reports of two peers. The first peer may have diverged or forged its report, and the second
+/// is correct. Returns the result as one word.
 ///
 /// # Panics
-/// If an unchanged report within the limits is refused, or one with a wrong hash is accepted. Also if a side that
-/// followed the rules is blamed, or if the blame depends on the order of the sides.
+/// If an unchanged report within the limits is refused, or one with a wrong hash is accepted. Also if the
+/// comparison blames a correct side, or if the blame depends on the order of the sides.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -110,7 +110,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
         Ok(found) => found,
         Err(_) => return "not compared",
     };
-    // Side B has followed the rules, so it must not be blamed.
+    // Side B is correct, so the comparison must not blame it.
     assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
     let mirrored = compare::<Sandbox>(&right, &left, &limits).map(|found| found.blame);
     let same = match (found.blame, &mirrored) {

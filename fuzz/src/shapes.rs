@@ -59,7 +59,7 @@ pub fn area(source: &mut Source<'_>) -> Area {
     area
 }
 
-/// Makes a few shapes sensors, areas or one-way. Lets some report hits.
+/// Turns a few shapes into sensors, areas or one-way shapes, and lets some report hit events.
 fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     match source.below(12) {
         0 | 1 => def.events.hit = true,
@@ -276,7 +276,7 @@ fn extreme(source: &mut Source<'_>) -> Geometry {
     }
 }
 
-/// A polygon as stored in a file.
+/// A polygon with arbitrary vertices, decoded as from a file. `None` if the decoder refuses it.
 fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     let grid = source.pick(&[1i32 << 22, 1 << 12, 1 << 28, 1]);
     let count = 3 + source.below(6);
@@ -287,7 +287,7 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     codec::decode(&codec::encode(&(vertices, radius))).ok()
 }
 
-/// The present definition of a shape with one property changed, or a new one.
+/// The present definition of a shape with one property changed, or a new definition.
 pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> ShapeDef {
     let fresh = shape(source);
     let Some(mut def) = world.shape(id).map(|shape| *shape.def()) else { return fresh };

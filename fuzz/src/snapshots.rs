@@ -19,8 +19,8 @@ const COST_MAX: u64 = 30_000;
 /// fields or bytes and, in most cases, a repaired hash.
 ///
 /// # Panics
-/// When an accepted world has another encoding. Also when, within ten ticks, it breaks an invariant or depends on its
-/// caches or its broad phase.
+/// When a decoded world encodes to other bytes. Also when the world, within ten ticks, breaks an invariant or depends
+/// on its caches or its broad phase.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     if source.one_in(32) {

@@ -123,7 +123,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Mostly a number from `low` to `high` thousandths, sometimes one near a limit unless the source is ordinary.
+    /// A number from `low` to `high` thousandths. If the source is not ordinary, sometimes a number near a limit.
     pub fn mostly(&mut self, low: i64, high: i64) -> Fx {
         if !self.ordinary && self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
     }

@@ -1,4 +1,4 @@
-//! Targets whose input is a file or packets reach many results. Prints the speed of the targets.
+//! Tests that the targets whose input is a file or packets reach many results. Prints the speed of the targets.
 
 use std::collections::BTreeMap;
 

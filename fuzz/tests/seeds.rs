@@ -1,11 +1,11 @@
-//! Runs all seeds without the fuzzer. This serves machines without a nightly compiler, and coverage.
+//! Runs all seeds without the fuzzer. This is for machines without a nightly compiler, and for coverage.
 
 use lockstep2d_fuzz::{
     broad_phases, bytes, hulls, lockstep, manifolds, matches, maths, pairs, questions, reports, snapshots,
     verdicts,
 };
 
-/// Runs the seeds of a target, which must be more than five.
+/// Runs the seeds of a target. There must be more than five.
 fn run<T>(target: &str, run: impl Fn(&[u8]) -> T) {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target);
     let mut count = 0;

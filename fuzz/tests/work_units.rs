@@ -12,10 +12,11 @@ use lockstep2d_fuzz::{generator, verdicts};
 /// Maximum time in nanoseconds per unit of work, with and without debug assertions and overflow checks.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// Shortest time of a setup or a tick that is judged. Shorter ones are judged only as a part of their file.
+/// Shortest time of a setup or a tick that is judged alone. Shorter ones are judged only as a part of their file.
 const JUDGED: Duration = Duration::from_micros(50);
 
-/// Number of runs of a file. The shortest time of each part counts, to exclude other load on the machine.
+/// Number of runs of a file. The shortest time of the setup and of each tick counts, to exclude other load on the
+/// machine.
 const RUNS: usize = 5;
 
 /// Maximum number of ticks of a world.

@@ -35,10 +35,10 @@ const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 
 /// Effect of a sensor on the bodies inside it, such as wind, water or a field of gravity.
 ///
-/// The area acts on the solid shapes of dynamic bodies with mass that the sensor detects, in proportion to the part of
-/// each shape that is inside. Segments and links count only if the body has no shape with an area. Rounded outlines are
-/// measured as polygons of 32 sides, with an error of up to 0.4 % of the radius for circles, and 1.7 % for other
-/// rounded outlines. The area's body feels no reaction.
+/// The area acts on dynamic bodies with mass, through their solid shapes that the sensor detects, in proportion to the
+/// part of each shape that is inside. Segments and links count only if the body has no shape with an area. Rounded
+/// outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of the radius for circles, and 1.7 % for
+/// other rounded outlines. The area's body feels no reaction.
 ///
 /// ```
 /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -62,7 +62,8 @@ const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 #[doc(alias = "buoyancy")]
 #[doc(alias = "wind")]
 pub struct Area {
-    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It does not depend on the mass.
+    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It does not depend on the mass of the
+    /// bodies inside.
     pub acceleration: Vec2<Fx>,
     /// Acceleration towards the centre of the shape.
     pub attraction: Option<Attraction>,
@@ -105,7 +106,7 @@ pub struct Area {
 pub struct Attraction {
     /// Acceleration in m/s² at the distance `radius`, within ±10 000. Negative values repel.
     pub acceleration: Fx,
-    /// Distance in metres, 0.01 to 2^20. Nearer to the centre the acceleration decreases linearly to 0.
+    /// Distance in metres, 0.01 to 2^20. Within this distance, the acceleration decreases linearly to 0 at the centre.
     pub radius: Fx,
     /// Falloff of the acceleration beyond `radius`.
     pub falloff: Falloff,

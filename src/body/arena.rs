@@ -286,7 +286,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the values into ranges of slots that end before the given slots. See [`Arena::at_mut`].
+    /// Divides the slots into consecutive ranges, each of which ends before the next slot in `ends`. For changes as in
+    /// [`Arena::at_mut`].
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -328,8 +329,8 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and `retired` counts
-    /// the other vacant slots.
+    /// Whether each vacant slot is either in the free list, exactly once, or retired, and `retired` counts the retired
+    /// slots.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {

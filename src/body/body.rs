@@ -16,7 +16,7 @@ use crate::math::{
     widen,
 };
 
-/// Limit in m/s of each velocity component and of `u = k w`. The difference of two such components fits [`Speed`].
+/// Limit in m/s of each velocity component and of `Body::spin`. The difference of two such values fits [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 
 /// Centre of mass in the world, and rotation.
@@ -121,7 +121,7 @@ impl Body {
     /// Origin of the body in the world, in metres.
     #[must_use]
     pub fn position(&self) -> Vec2<Fx> {
-        // The common case, which needs no sine.
+        // This common case needs no sine.
         if self.mass.centre == Vec2::ZERO {
             return self.centre;
         }
@@ -170,7 +170,7 @@ impl Body {
         divide(widen(self.spin), self.mass.gyration)
     }
 
-    /// Velocity in m/s of the body's material at a world position. Also 0 after a step by `World::move_to`.
+    /// Velocity in m/s of the material at a world position. 0 after a step in which `World::move_to` moved the body.
     #[must_use]
     pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
@@ -292,7 +292,7 @@ impl Body {
         self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
-    /// Clears velocity along locked axes, and holds the kinematic target at the current pose along them.
+    /// Clears the velocity along locked axes, and sets the kinematic target to the current pose along these axes.
     pub(crate) fn hold_locked_axes(&mut self) {
         let (turns, locks) = (self.turns(), self.settings.locks);
         if locks.x {
@@ -339,8 +339,8 @@ impl Body {
         self.torque = self.torque.saturating_add((point - self.centre).cross(force));
     }
 
-    /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`. A velocity above
-    /// [`SPEED_MAX`] keeps its direction.
+    /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`. Shortens a velocity above
+    /// [`SPEED_MAX`] without turning it.
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
         let dv = Vec2::new(divide(impulse.x, self.mass.mass), divide(impulse.y, self.mass.mass));
         self.velocity = (self.velocity() + dv).shortened(SPEED_MAX.into()).narrow();
@@ -358,7 +358,7 @@ impl Body {
     fn turn_by(&mut self, impulse: i128) {
         if self.turns() && self.has_mass() {
             let over = i128::from(self.mass.mass.to_bits()) * i128::from(self.mass.gyration.to_bits());
-            // If the impulse has no room for 21 more bits, the divisor has bits to spare, or the quotient is too large.
+            // Without room for 21 more bits in the impulse, drops bits of the divisor: they suffice, or `du` saturates.
             let room = impulse.unsigned_abs().leading_zeros().saturating_sub(1).min(21);
             let du = saturate_wide(div_round(impulse << room, over >> (21 - room)));
             self.spin = self.spin.saturating_add(Speed::from_bits(saturate(du)));
@@ -367,7 +367,7 @@ impl Body {
     }
 
     /// Changes of `v` and `u` by the applied force and torque in one of `rate` sub-steps per second: `dv = F / (m
-    /// rate)`, `du = torque / (m k rate)`. `dv` is in units of [`Speed`], beyond its range if need be.
+    /// rate)`, `du = torque / (m k rate)`. `dv` is in units of [`Speed`] and may exceed the range of that format.
     pub(crate) fn acceleration_step(&self, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force, self.torque, rate)
     }

@@ -31,9 +31,9 @@ pub enum BodyKind {
     #[doc(alias = "static")]
     #[doc(alias = "StaticBody")]
     Fixed,
-    /// Moves with its velocity and is not pushed: lifts and doors.
+    /// Moves with its velocity, which forces and contacts do not change: lifts and doors.
     Kinematic,
-    /// Moved by forces, contacts and joints.
+    /// Forces, contacts and joints move it.
     Dynamic,
 }
 
@@ -66,7 +66,7 @@ pub struct BodyDef {
     pub settings: BodySettings,
     /// Whether the body takes part in the simulation. A disabled body keeps its pose and collides with nothing.
     pub enabled: bool,
-    /// Whether the body starts asleep. It must be dynamic and enabled, in a world with sleeping on.
+    /// Whether the body starts asleep. This has an effect only on a dynamic, enabled body in a world with sleeping on.
     pub asleep: bool,
     /// Number for the game's own use. It is part of the state and its hash.
     pub user_data: u64,
@@ -210,7 +210,7 @@ impl BodyDef {
         self.continuous(Continuous::Kinematic)
     }
 
-    /// Prevents the body from falling asleep by itself: see [`BodySettings::may_sleep`].
+    /// Keeps the body from falling asleep by itself: see [`BodySettings::may_sleep`].
     #[must_use]
     pub const fn never_sleeps(mut self) -> Self {
         self.settings.may_sleep = false;
@@ -224,7 +224,8 @@ impl BodyDef {
         self
     }
 
-    /// Starts the body asleep and at rest. Sensors at rest that exist already detect it when it wakes.
+    /// Starts the body asleep and at rest. A sensor that is at rest and already exists does not detect the body until
+    /// the body wakes.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;

@@ -9,8 +9,8 @@ use super::material::Material;
 use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
 use crate::math::{Fx, Vec2};
 
-/// A polyline of [`Geometry::Link`] shapes, which store their neighbours. This prevents ghost collisions where two
-/// links meet.
+/// A polyline of [`Geometry::Link`] shapes. Each link stores the far ends of its neighbours, which prevents ghost
+/// collisions where two links meet.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Chain}, fx, math::Vec2, world::World};
@@ -44,9 +44,9 @@ impl<'a> Chain<'a> {
         self
     }
 
-    /// Makes the chain solid from its right side, looking along its points. A counter-clockwise loop is then solid from
-    /// outside, and ground whose points run from right to left is solid from above. A shape whose centre is on the left
-    /// side passes through.
+    /// Makes the chain solid only from its right side, looking from its first point towards its last. A
+    /// counter-clockwise loop is then solid from outside, and ground whose points run from right to left is solid from
+    /// above. A shape whose centre is on the left side passes through.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;
@@ -70,8 +70,8 @@ impl<'a> Chain<'a> {
     /// Returns the links, as shapes of a body.
     ///
     /// # Errors
-    /// [`GeometryError::ChainLength`] unless there are at least 2 points (3 for a closed chain) and at most 4096 links;
-    /// [`GeometryError::MaterialCount`] unless there are no materials, one, or one per link;
+    /// [`GeometryError::ChainLength`] if there are fewer than 2 points (3 for a closed chain) or more than 4096 links;
+    /// [`GeometryError::MaterialCount`] if the number of materials is not 0, 1 or the number of links;
     /// [`GeometryError::SizeOutOfRange`] if neighbouring points are closer than 2 mm, or a coordinate is not within
     /// ±2^30 m.
     pub fn links(&self) -> Result<Vec<ShapeDef>, GeometryError> {

@@ -34,8 +34,8 @@ pub enum GeometryError {
     Clockwise,
     /// The outline is concave, collinear, or crosses itself.
     NotConvex {
-        /// Index of the vertex at which the wrong edge starts. Another vertex is on the outer side of that edge or on
-        /// its line.
+        /// Index of the vertex at which the wrong edge starts. Another vertex is on the outer side or on the line of
+        /// this edge.
         vertex: u64,
     },
     /// The chain has fewer than 2 points (3 if it is closed), or more than 4096 links.
@@ -122,7 +122,7 @@ impl fmt::Display for Range<'_> {
     }
 }
 
-/// A rejected change, which leaves the world as it was.
+/// Reason why the world rejects a change. A rejected change leaves the world as it was.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, WorldError}, fx, world::World};
@@ -223,9 +223,9 @@ pub enum WorldError {
     AreaOfLine,
     /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// The bodies of a joint cannot be changed.
+    /// A new definition of a joint names other bodies. The bodies of a joint cannot be changed.
     JointOfOtherBodies(JointId),
-    /// The joint lacks the part to change, such as a motor.
+    /// The joint does not have the part that was to be changed, such as a motor.
     JointWithout {
         /// The joint.
         joint: JointId,

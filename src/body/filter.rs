@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Collision filter. Two shapes in the same non-zero group may collide if the group is positive, and do not collide if
 /// it is negative. For other pairs, each shape's mask must include a category of the other shape.
 ///
-/// The broad phase is faster for a large set of shapes that do not collide with each other, such as bullets, if all of
-/// them have the same group from -1 to -32 768, or the same single category, which their masks exclude.
+/// A large set of shapes that do not collide with each other, such as bullets, costs the broad phase less if all shapes
+/// have the same group from -1 to -32 768. In group 0, a single common category that all masks exclude has the same
+/// effect.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;
@@ -44,7 +45,7 @@ impl Filter {
         let Filter { category, mask, group } = *self;
         let class = match group {
             ..0 => i64::from(group),
-            // If two such shapes have the same category, their masks exclude each other.
+            // If two shapes with such filters have the same category, their masks exclude each other.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };
@@ -57,10 +58,10 @@ impl Filter {
 pub(crate) struct CollisionClass(i16);
 
 impl CollisionClass {
-    /// Class of a shape that may collide with any class, and of a set of several classes.
+    /// Class of a shape that may collide with shapes of any class, and of a set of shapes of several classes.
     pub(crate) const NONE: Self = CollisionClass(0);
 
-    /// Class of the union of two sets.
+    /// Class of the union of two sets of shapes.
     pub(crate) fn common(self, other: Self) -> Self {
         if self == other { self } else { CollisionClass::NONE }
     }

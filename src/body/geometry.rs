@@ -29,8 +29,8 @@ pub enum Geometry {
         /// Radius in metres, 0.002 to 110.
         radius: Fx,
     },
-    /// A line segment, solid from both sides, without mass. Does not collide with segments and links. On a fixed body,
-    /// it may be as long as the world.
+    /// A line segment, solid from both sides, without mass. It does not collide with segments and links. On a fixed
+    /// body, it may be as long as the world.
     Segment {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
@@ -43,13 +43,13 @@ pub enum Geometry {
     Capsule {
         /// Centre of the first round end, in metres from the shape's centre.
         a: Vec2<Fx>,
-        /// Centre of the second round end, at least 2 mm away.
+        /// Centre of the second round end, at least 2 mm from `a`.
         b: Vec2<Fx>,
         /// Radius in metres, at least 0.002. The capsule extends at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
-    /// A segment of a [`Chain`](super::Chain). At an end with a neighbour, contact normals are those of the two links
-    /// and, at a convex corner, those between them.
+    /// A segment of a [`Chain`](super::Chain). At an end with a neighbour, a contact normal is the normal of one of the
+    /// two links or, at a convex corner, a direction between these normals.
     Link {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,

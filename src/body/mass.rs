@@ -51,7 +51,7 @@ pub enum MassSource {
     /// body does.
     #[default]
     Shapes,
-    /// Given explicitly. The shapes do not matter.
+    /// Given explicitly. The shapes do not contribute.
     Given {
         /// Mass in kg, 1e-5 to 2^30.
         mass: Fx,
@@ -89,7 +89,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a dynamic body from the areas and densities of its shapes.
+    /// Computes the properties of a dynamic body from the areas and densities of its shapes.
     ///
     /// # Errors
     /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, for example 0 because the shapes are lines;
@@ -128,8 +128,9 @@ impl MassProperties {
         MassProperties { mass, ..self }
     }
 
-    /// Properties of a body without mass: forces do not change its velocity. `k` is arbitrary: 4 m allows 100 rad/s at
-    /// a speed limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
+    /// Properties of a body without mass: forces do not change its velocity. The radius of gyration is arbitrary: 4 m
+    /// allows 100 rad/s at a speed limit of 400 m/s, and keeps the ratio of the longest lever arm to this radius below
+    /// 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }
@@ -184,7 +185,8 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // Squares of lengths have 44 fraction bits. A mass and k² + d² have at most 63 bits each.
+        // Squares of lengths have 44 fraction bits. A mass has at most 63 bits, and so has the sum of k² and the
+        // squared distance from the centre.
         let moment: i128 = parts
             .map(|part| {
                 let arm = part.centre - centre;
@@ -244,7 +246,8 @@ impl Part {
         }
     }
 
-    /// A rectangle of `l` by `2 r`, and two half discs with centres of mass `4 r / (3 pi)` from its ends:
+    /// The capsule is a rectangle of `l` by `2 r`, and two half discs whose centres of mass are `4 r / (3 pi)` from its
+    /// ends:
     ///
     /// ```text
     /// A     = 2 r l + pi r^2
@@ -329,7 +332,7 @@ mod tests {
     fn a_rounded_rail_weighs_its_core_its_sides_and_four_quarter_discs() {
         let rail = Polygon::rectangle(fx!(0.4), fx!(20)).unwrap().rounded(fx!(0.2)).unwrap();
         let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset((fx!(1), fx!(2)))]).unwrap();
-        // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi); as a `Length`, 0.2 has an error of 5e-8, and 0.4 one of 1e-7.
+        // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi). Rounding to `Length` changes 0.2 by 5e-8 and 0.4 by 1e-7.
         let expected = fx!(144.96) + fx_mul(fx!(0.12), PI);
         assert!(
             (properties.mass - expected).abs() < fx!(0.0001),

@@ -74,9 +74,9 @@ pub struct Material {
     /// never come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
-    /// of the radius. A pair uses the larger value and the larger radius. For a wheel on round ground with a larger
-    /// radius, reduce the value in the ratio of the radii. A wheel on level ground loses
-    /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
+    /// of the radius. A pair uses the larger value and the larger radius. If the ground is round and has a larger
+    /// radius than the wheel, reduce the value in the ratio of the radii. A wheel with the radius `r` and the radius of
+    /// gyration `k` on level ground loses `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
     pub rolling_resistance: Fx,
     /// Surface speed in m/s, clockwise around the shape, ±400: the upper side of a conveyor belt with a positive speed
     /// carries bodies to the right. A pair uses the sum of its two shapes.

@@ -45,7 +45,7 @@ impl Name {
         room.copy_from_slice(text.as_bytes());
         let name = Name { bytes };
         name.validate()?;
-        // The padding would hide a zero at the end of the text.
+        // A zero byte at the end of the text would look like padding.
         if name.as_str() == text { Ok(name) } else { Err(WorldError::NameInvalid) }
     }
 

@@ -12,8 +12,8 @@ use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
 /// Largest extent in metres of a circle, capsule or polygon from its centre on each axis, radius included. Each point
-/// is then within 156 m of the centre. If two such shapes are at most 15 m apart, a vertex of one is within 3 * 156 m +
-/// 15 m of the centre of the other, which fits [`Length`].
+/// is then within 156 m of the centre. If two shapes of this extent are at most 15 m apart, a vertex of one is at most
+/// 3 * 156 m + 15 m from the centre of the other. This distance fits [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// In metres. A shorter edge has no reliable direction in units of [`Length`].
@@ -67,8 +67,8 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners with an angle within about 0.0001 rad of 0 or of 180 degrees: a point beside one of the two edges
-    /// may be classified as beside the other.
+    /// Avoid corners with an angle within about 0.0001 rad of 0 or of 180 degrees: collision detection may classify a
+    /// point beside one of the two edges as beside the other edge.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not
@@ -207,8 +207,8 @@ impl Polygon {
             if edge.widen().length() < EDGE_MIN {
                 return Err(GeometryError::ShortEdge { vertex: i as u64 });
             }
-            // Testing all other vertices also rejects stars that wind around twice. The ends of the edge are excluded
-            // by index, so another vertex at the same position is rejected too.
+            // Testing all other vertices also rejects stars that wind around twice. The test skips the ends of the edge
+            // by index, so it also rejects another vertex at the position of an end.
             let strictly_left = |(j, &other): (usize, &Vec2<Length>)| {
                 j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };

@@ -8,9 +8,9 @@ use crate::math::Fx;
 
 /// Locked degrees of freedom of a body.
 ///
-/// Contacts and joints treat a body with locked rotation as unable to rotate. They ignore a locked axis: every sub-step
-/// clears the velocity along that axis afterwards. A body that is pushed both along and across the axis therefore takes
-/// a few ticks to settle.
+/// Contacts and joints treat a body with locked rotation as unable to rotate. They do not take a locked x or y axis
+/// into account: every sub-step clears the velocity along that axis after they have acted. A body that is pushed both
+/// along and across the axis therefore takes a few ticks to settle.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -37,7 +37,7 @@ pub struct MotionLocks {
     pub rotation: bool,
 }
 
-/// Bodies that a body is swept against, so that it does not tunnel through them.
+/// Kinds of bodies against which a body is swept, so that it does not tunnel through them.
 ///
 /// ```
 /// use lockstep2d::body::{BodyDef, Continuous, Polygon, ShapeDef};
@@ -61,8 +61,9 @@ pub enum Continuous {
     Fixed,
     /// Bodies of all kinds, except bullets.
     Bullet,
-    /// Fixed bodies, and kinematic bodies relative to which this body is fast. A platform that carries the body is not
-    /// one of them. The check has a small cost in every tick of a world with kinematic bodies.
+    /// Fixed bodies, and kinematic bodies relative to which this body is fast. A platform that carries the body does
+    /// not count, because it is slow relative to the body. The check has a small cost in every tick of a world with
+    /// kinematic bodies.
     Kinematic,
 }
 

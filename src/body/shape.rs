@@ -15,7 +15,7 @@ use super::shape_fields::ShapeFields;
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Vec2};
 
-/// Largest world coordinate in metres: half of what [`Fx`] can store, so that adding a smaller length cannot overflow.
+/// Largest world coordinate in metres: half of the range of [`Fx`], so that adding a smaller length cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
 /// Largest distance in metres of a shape, joint anchor or centre of mass from the origin of a movable body, on each
@@ -52,13 +52,13 @@ pub struct ShapeDef {
     pub material: Material,
     /// Collision filter.
     pub filter: Filter,
-    /// Makes the shape a one-way platform. Other shapes pass through it in this direction, which is in the body's
-    /// frame: 90 degrees for up.
+    /// Makes the shape a one-way platform. Other shapes pass through the platform in this direction. The angle is in
+    /// the body's frame: 90 degrees for up.
     ///
     /// The platform is solid if the contact normal, from the platform to the other shape, is within 60 degrees of the
-    /// direction. Otherwise the other shape passes, and the pair does not touch. It continues to pass while the shapes
-    /// overlap along the direction by more than a quarter of the world's speculative distance (for small shapes, a 32nd
-    /// of the longer side of the smaller shape).
+    /// direction. Otherwise the other shape passes, and the pair does not touch. The other shape continues to pass
+    /// while the overlap along the direction is more than a quarter of the world's speculative distance (for small
+    /// shapes, a 32nd of the longer side of the smaller shape).
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
     /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors only if [`EventSwitches::detect_sensors`]
@@ -255,8 +255,8 @@ pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together.
     pub(crate) def: Box<ShapeDef>,
-    /// AABB with a margin and the predicted motion of a tick. Shapes of fixed bodies have no margin. The box decides
-    /// which pairs exist, so it is part of the state.
+    /// AABB, expanded by a margin and by the predicted motion of one tick. Shapes of fixed bodies have no margin. The
+    /// box decides which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 
@@ -323,7 +323,7 @@ impl Shape {
         self.def.area.as_ref()
     }
 
-    /// Whether the shape is an area that acts on the other shape if that belongs to a dynamic body.
+    /// Whether the shape is an area that acts on the other shape, provided that the other shape's body is dynamic.
     pub(crate) fn acts_on(&self, other: &Shape) -> bool {
         self.def.area.is_some() && !other.is_sensor() && self.detects(other)
     }

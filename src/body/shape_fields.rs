@@ -1,6 +1,6 @@
-//! Encoding of a shape definition, with the sensor flag and the area in one field. In binary formats this is a byte of
-//! flags, 1 for a sensor and 2 for an area, then the area if there is one. Without an area the byte equals the encoding
-//! of a `bool`.
+//! Encoding of a shape definition, with the sensor flag and the area in one field. In binary formats, this field is a
+//! byte of flags (1 for a sensor, 2 for an area), followed by the area if there is one. Without an area, the byte
+//! equals the encoding of a `bool`.
 
 use core::fmt;
 
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    /// Flags 2 and 3 announce an area, which is missing in these bytes.
+    /// Flags 2 and 3 are rejected too, because they announce an area that these bytes lack.
     #[test]
     fn unknown_flags_are_refused() {
         let solid = encode(&shape());

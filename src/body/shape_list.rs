@@ -1,4 +1,4 @@
-//! Shape list of a body, which stores up to two handles inline, where every step reads them.
+//! Shape list of a body. It stores up to two handles inline, beside the other fields that every step reads.
 
 use alloc::vec::Vec;
 

@@ -1,7 +1,7 @@
 //! Tests whether the hash covers all state that influences future ticks.
 //!
-//! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the changed state has
-//! the same hash, it must have the same future under the same inputs.
+//! The test replaces one byte or a run of bytes in a save by the bytes at the same place in a save of another tick. If
+//! the changed state has the same hash, it must also have the same future under the same inputs.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -16,7 +16,8 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Minimum interval in ticks between kept saves. At the start, saves at powers of two are kept in addition.
+/// Minimum interval in ticks between stored saves. Before the first interval has passed, saves at powers of two are
+/// stored too.
 const INTERVAL: u64 = 16;
 const FUTURE: usize = 48;
 const DONORS_MAX: usize = 6;
@@ -41,7 +42,7 @@ impl<G: Game> Default for ByteSwaps<G> {
 }
 
 impl<G: Game> ByteSwaps<G> {
-    /// Keeps the save after a tick if it is due, and examines saves that are [`FUTURE`] ticks old.
+    /// Stores a save after the tick if one is due, and examines stored saves that are [`FUTURE`] ticks old.
     pub(super) fn perturb(
         &mut self,
         game: &G,
@@ -77,13 +78,13 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
-        // The world's own hash covers all bytes of the world, so these are not swapped.
+        // The world's own hash covers all bytes of the world, so the test does not swap bytes of the world.
         let world = world_in::<G>(moment, now)?;
         let byte_swaps = self.donors.iter().flat_map(|donor| byte_swaps(&moment.bytes, donor));
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
         byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         byte_swaps.dedup();
-        // The first swap depends on the tick, so that other saves try other swaps.
+        // The first swap to try depends on the tick, so that different saves try different swaps.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
         byte_swaps.rotate_left(turn);
         for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {
@@ -98,7 +99,8 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     /// Plays two states with the same hash. Returns the number of ticks after which their hashes differ, and the saves
-    /// at the start. `None` if they do not differ, or if the changed bytes are not another state with the same hash.
+    /// at the start. `None` if the hashes stay equal, or if the changed bytes are not the exact save of a state with
+    /// the same hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,
@@ -157,7 +159,8 @@ fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
-/// The possible swaps with a save of the same length: each byte that differs, and each run of such bytes.
+/// The possible swaps with the save `donor` of the same length: each byte that differs, and each run of differing
+/// bytes.
 fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
     let mut found = Vec::new();
     if bytes.len() != donor.len() {

@@ -30,14 +30,14 @@ pub struct Checked {
     pub hash: StateHash,
     /// The variants in which the ticks were played, in addition to the reference run.
     pub variants: Vec<Variant>,
-    /// Number of ticks simulated by the reference run and the variants, except [`Variant::Recorded`].
+    /// Number of ticks simulated by the reference run and by all variants except [`Variant::Recorded`].
     pub simulated: u64,
 }
 
-/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
+/// Checks a game while a caller plays it, for callers that do not have all inputs beforehand. Supports all variants
 /// except [`Variant::Recorded`].
 ///
-/// A checker must not be used after its first finding.
+/// Do not use a checker after its first finding.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::Command};

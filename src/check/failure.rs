@@ -48,13 +48,13 @@ pub struct Failure {
     pub finding: Finding,
     /// The finding in the minimised replay.
     pub minimised: Finding,
-    /// Replay file with as few ticks and inputs as were found within the budget. [`check_replay`](super::check_replay)
-    /// reproduces the failure, unless the failure is random. In that case the checkpoints of the replay may be wrong as
-    /// well.
+    /// Replay file with the fewest ticks and inputs that the search found within the budget.
+    /// [`check_replay`](super::check_replay) reproduces the failure, unless the failure is random. The checkpoints of
+    /// the replay of a random failure may be wrong as well.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,
-    /// Number of runs of the replay that failed, and number of runs. Random failures do not occur in every run.
+    /// Number of runs of the replay that failed, and number of all runs. Random failures do not occur in every run.
     pub failed: (u32, u32),
 }
 
@@ -73,7 +73,7 @@ impl fmt::Debug for Failure {
     }
 }
 
-/// Reason why a log of inputs did not pass.
+/// Reason why a check of a log of inputs did not succeed.
 ///
 /// ```
 /// use lockstep2d::check::{CheckError, CheckOptions, check_replay};

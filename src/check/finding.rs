@@ -9,7 +9,7 @@ use crate::inspect::{Difference, differences, fields};
 use crate::replay::{RecordError, Verdict};
 use crate::world::Phase;
 
-/// The fault of a variant.
+/// Kind of a fault that a check finds while it plays a [`Variant`].
 ///
 /// ```
 /// use lockstep2d::check::Fault;
@@ -39,7 +39,7 @@ pub enum Fault {
         /// Decoding error.
         why: String,
     },
-    /// The setup started a game the first time, but not later.
+    /// The setup started a game the first time, but a later attempt to start a game failed.
     Refused {
         /// Reason given by the game.
         why: String,
@@ -63,9 +63,9 @@ pub enum Fault {
 pub enum Guess {
     /// The actual inputs.
     Right,
-    /// The default input.
+    /// The default input for every player.
     Default,
-    /// The inputs of the previous tick, held.
+    /// The inputs of the tick before the rolled-back ticks, repeated in each of them.
     Held,
 }
 
@@ -101,7 +101,7 @@ pub struct Finding {
     /// Number of ticks played when the fault was detected. May exceed `tick` for [`Variant::RolledBack`] and
     /// [`Variant::ByteSwapped`].
     pub played: u64,
-    /// The first phase whose digest differs, if phases are compared. `None` also if a difference existed before the
+    /// The first phase whose digest differs, if phases are compared. `None` also if the states differed before the
     /// step.
     pub phase: Option<Phase>,
     /// Depth of the rollback in ticks, and the predicted inputs that were played before it.

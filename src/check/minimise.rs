@@ -68,7 +68,7 @@ fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Re
     }
 }
 
-/// Reduces a finding to a failure with a minimal replay.
+/// Turns a finding into a failure with a minimised replay.
 pub(super) fn minimise<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
@@ -113,7 +113,7 @@ struct Search<'s, G: Game> {
     setup: &'s G::Setup,
     options: CheckOptions,
     spent: u64,
-    /// Number of runs of a candidate that have to fail.
+    /// Number of runs of a candidate log that have to fail before the log counts as failing.
     need: u32,
 }
 
@@ -127,7 +127,7 @@ impl<G: Game> Search<'_, G> {
         }
         self.need = 1;
         let of_cut = self.attempt(first(log, finding.played).ticks, log);
-        // A random failure may occur more often in a longer log.
+        // If the failure is random, the whole log may fail more often than its first ticks.
         self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
         let of_all = match self.need <= self.options.repeats {
             true => self.attempt(log.ticks.clone(), log),
@@ -140,8 +140,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays a candidate repeatedly, and stops once it cannot fail often enough. A candidate that fails is cut after
-    /// the last failing tick.
+    /// Plays a candidate log repeatedly, and stops once the candidate cannot fail often enough any more. A candidate
+    /// that fails is cut after the last failing tick.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
@@ -209,7 +209,7 @@ impl<G: Game> Search<'_, G> {
     }
 }
 
-/// A change of the ticks between two indices, if it is possible.
+/// A change of the ticks between two indices. `None` if it is not possible.
 type Change<'a, G> = dyn Fn(&[Inputs<G>], usize, usize) -> Option<Vec<Inputs<G>>> + 'a;
 
 fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> I) -> Option<Vec<I>> {

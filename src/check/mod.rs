@@ -1,9 +1,9 @@
 //! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first fault.
 //!
-//! [`check`] plays the inputs of a [`Game`] in a reference run, and beside it in the [`CheckOptions::variants`]: again
-//! from the start, reloaded at every tick, rolled back by 1 to 8 ticks, with cleared caches, on other thread counts and
-//! so on. The variants must reach the state hashes of the reference run. Otherwise the result is a [`Failure`]: the
-//! variant, the tick, the fields that differ, and a minimised replay.
+//! [`check`] plays the inputs of a [`Game`] in a reference run, and at the same time in the [`CheckOptions::variants`]:
+//! again from the start, reloaded at every tick, rolled back by 1 to 8 ticks, with cleared caches, on other thread
+//! counts and so on. The variants must reach the state hashes of the reference run. Otherwise the result is a
+//! [`Failure`]: the variant, the tick, the fields that differ, and a minimised replay.
 //!
 //! ```
 //! use lockstep2d::{check::{self, CheckOptions}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
@@ -19,7 +19,8 @@
 //!
 //! # Limitations
 //!
-//! A panic of the game's code is not caught. Differences between machines, compilers or processes are not detected.
+//! A check does not catch panics of the game's code, and does not detect differences between machines, compilers or
+//! processes.
 
 mod byte_swap;
 mod checker;
@@ -66,8 +67,8 @@ pub fn check<G: Game>(
     minimise::run(setup, &log, options).map_err(|finding| failed(setup, &log, *finding, options))
 }
 
-/// Checks a game with the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The checkpoints of
-/// the replay are ignored.
+/// Checks a game with the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The check ignores
+/// the checkpoints of the replay.
 ///
 /// # Errors
 /// [`CheckError::Failed`] with the fault of the game. [`CheckError::Replay`] if the file is not a replay of this game,

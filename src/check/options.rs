@@ -25,9 +25,9 @@ pub enum Variant {
     /// The inputs are played again from [`CheckOptions::from`] on, in the same process. This detects random iteration
     /// orders, global state, addresses and clocks.
     Again,
-    /// Hash, work, claims and save are polled twice after every tick, which must not change the state.
+    /// Hash, work, claims and save are polled twice after every tick. Polling must not change the state.
     HashPolled,
-    /// The hash is polled only after the last tick. It must equal the hash of the reference run.
+    /// The hash is polled only after the last tick. This hash must equal the hash of the reference run.
     HashUnpolled,
     /// Every [`CheckOptions::every`] ticks, the state is encoded, decoded and loaded into a new game, which continues.
     Reloaded,
@@ -40,8 +40,9 @@ pub enum Variant {
     Backend(Backend),
     /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// The world has this number of threads. They share the work of a tick if the tick before it had at least 256 awake
-    /// bodies. The variant changes nothing without the feature `parallel`, or if the threads cannot be created.
+    /// The world has this number of threads. The threads share the work of a tick if the previous tick had at least 256
+    /// awake bodies. The variant has no effect without the feature `parallel`, or if the system cannot create the
+    /// threads.
     Threads(usize),
     /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, later hashes must not
     /// change either.

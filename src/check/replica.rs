@@ -95,7 +95,7 @@ impl<G: Game> Replica<G> {
         Finding::new(self.variant, fault, now.tick)
     }
 
-    /// Configures the world for the variant, before every tick, because a game may replace its world.
+    /// Configures the world for the variant. Called before every tick, because a game may replace its world.
     fn arrange(&mut self) {
         let Some(world) = self.game.world_mut() else {
             return;

@@ -47,7 +47,7 @@ impl<G: Game> Past<G> {
         let turn = now.tick / now.options.every.max(1);
         for (depth, guess) in rollbacks(now.options.depths, depth_max, turn) {
             let last = self.moments.len() - 1;
-            // Near the start, fewer states are recorded.
+            // Near the start of the log, there are fewer earlier states.
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
             if depth > 0 {
                 *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
@@ -57,8 +57,8 @@ impl<G: Game> Past<G> {
         Ok(())
     }
 
-    /// Rolls back to a moment and plays up to the current tick: first with the predicted inputs, unless they are the
-    /// actual ones, then with the actual ones.
+    /// Rolls back to a moment and plays up to the current tick: first with the predicted inputs, unless these are the
+    /// actual inputs, then with the actual inputs.
     fn roll_back(
         &self,
         game: &mut G,

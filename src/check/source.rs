@@ -11,10 +11,10 @@ use crate::math::Rng;
 /// Generates inputs for some players, tick by tick, from bytes. Any byte string gives a log, and a small change of the
 /// bytes usually causes a small change of the log.
 ///
-/// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
-/// get new ones. New inputs are made by the input's own `Deserialize`, with short lists, and with integers that are
-/// often small or near the maximum or the middle of their range. An input whose `Deserialize` fails is replaced by the
-/// default. If the inputs of a tick do not survive encoding and decoding, all of them are replaced.
+/// The first byte of a tick decides whether all players repeat their inputs, for up to 16 ticks, or whether one player
+/// or all players get new inputs. The input's own `Deserialize` makes new inputs. Lists are short, and integers are
+/// often small or near the maximum or the middle of their range. If `Deserialize` fails, the default replaces the
+/// input. If the inputs of a tick cannot be encoded and decoded, the default replaces all of them.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };
@@ -37,7 +37,7 @@ pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Inpu
     log
 }
 
-/// Generates random inputs for some players and a number of ticks, which follow from the state of `rng`.
+/// Generates random inputs for some players and a number of ticks. The inputs follow from the state of `rng`.
 #[must_use]
 pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Vec<G::Input>> {
     let mut log = Vec::new();
@@ -49,7 +49,7 @@ pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Ve
     log
 }
 
-/// The inputs after encoding and decoding, or default inputs if that fails.
+/// The inputs after encoding and decoding, or default inputs if encoding fails.
 fn canonical<I>(inputs: Vec<I>, players: u32) -> Vec<I>
 where
     I: Clone + Default + serde::Serialize + de::DeserializeOwned,

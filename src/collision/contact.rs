@@ -14,8 +14,8 @@ pub(crate) type Pair = (u32, u32);
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touched in the last tick. If one is a sensor, whether they overlapped at the end of that
-    /// tick.
+    /// Whether the shapes touched in the last tick. If one of the shapes is a sensor, whether the shapes overlapped at
+    /// the end of that tick.
     pub(crate) touching: bool,
     /// Whether a one-way platform lets the other shape pass: see `one_way.rs`.
     pub(crate) passing: bool,
@@ -23,7 +23,8 @@ pub(crate) struct Contact {
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
     pub(crate) kept: KeptManifold,
-    /// Accumulated angular impulse of rolling resistance times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s` with the inverse masses `mA` and `mB`:
+    /// see `solver/contact/rolling.rs` for the scale `s`.
     pub(crate) rolling: Speed,
 }
 
@@ -33,7 +34,7 @@ pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
     /// Normal impulse times the sum of the inverse masses `mA + mB`: `p = L / D` of `solver/row.rs`.
     pub(crate) normal: Speed,
-    /// Tangent impulse times `mA + mB`: this point's share of the friction of both points.
+    /// Tangent impulse times `mA + mB`: this point's share of the friction impulse of both points.
     pub(crate) tangent: Speed,
 }
 
@@ -71,8 +72,8 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, the contact
-    /// keeps those coordinates of its lever arms that have changed by at most `tolerances` (in metres).
+    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, each coordinate
+    /// of a lever arm that differs from its last value by at most `tolerances` (in metres) keeps that value.
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;

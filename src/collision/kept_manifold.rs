@@ -8,14 +8,16 @@ use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturat
 
 /// The manifold of a contact, and the poses of the bodies for which it was computed.
 ///
-/// The normal and the lever arms stay constant in world axes while the manifold is kept. With arms that follow every
-/// movement, a leaning stack leans further by itself: columns of more than 40 boxes fall, while columns of 100 boxes
-/// stand with constant arms (`docs/DESIGN.md`). The separations follow from the poses, without the narrow phase.
+/// The normal and the lever arms stay constant in world axes while the manifold is kept. If the arms followed every
+/// movement, a leaning stack would lean further by itself: columns of more than 40 boxes would fall. With constant
+/// arms, columns of 100 boxes stand (`docs/DESIGN.md`). The separations follow from the poses, without the narrow
+/// phase.
 ///
 /// Lengths wrap around at 1024 m, so that differences are exact even if a fixed body's centre of mass is far away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
-    /// Zero if there is no manifold or it cannot be kept, for example because it belongs to a time of impact.
+    /// Zero if there is no manifold, or if the manifold cannot be kept, for example because it belongs to a time of
+    /// impact.
     pub(crate) normal: Vec2<Unit>,
     /// Vector from A's centre of mass to the first point.
     pub(crate) arm_a: Vec2<Length>,
@@ -36,8 +38,8 @@ const TURN_MAX: i32 = 1 << 26;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeptSide {
     pub(crate) pose: Pose,
-    /// Radius in metres of a circle about the middle of the shape that contains the shape. 0 for a disc about the
-    /// body's centre of mass, which rotation does not change.
+    /// Radius in metres of a circle that contains the shape, about the middle of the shape. 0 for a disc about the
+    /// body's centre of mass, because rotation does not change the disc.
     pub(crate) reach: Length,
 }
 
@@ -58,8 +60,8 @@ impl KeptManifold {
         KeptManifold { normal: manifold.normal, ..Self::at_impact(manifold, poses, [Vec2::ZERO; 2]) }
     }
 
-    /// The manifold of a time of impact, which cannot be kept. `moved` are the displacements of the bodies up to that
-    /// time.
+    /// A manifold at a time of impact. Such a manifold cannot be kept. `moved` are the displacements of the bodies up
+    /// to the time of impact.
     pub(crate) fn at_impact(manifold: &Manifold, [a, b]: [Pose; 2], moved: [Vec2<Length>; 2]) -> Self {
         let [first, second] = manifold.both_points();
         let arm = |body: Pose, moved: Vec2<Length>| {
@@ -78,8 +80,8 @@ impl KeptManifold {
         }
     }
 
-    /// Takes over coordinates of the lever arms of an earlier manifold with the same points, where the difference is at
-    /// most the tolerance in metres.
+    /// Replaces a coordinate of a lever arm by the coordinate of an earlier manifold with the same points, if the two
+    /// differ by at most the tolerance in metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
             for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
@@ -156,7 +158,7 @@ impl KeptManifold {
         let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
         let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
         let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
-        // 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
+        // `d` has 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
         let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
         let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
         let mut separations = [Step::ZERO; 2];

@@ -11,20 +11,20 @@ use crate::world::World;
 /// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body found
 /// so far. The next body belongs to the scene if it is within four times the reach.
 const SCENE_REACH_MIN: Fx = fx!(16);
-/// Upper limit of the search distance for ground, in sizes of the scene.
+/// Upper limit of the search distance for ground, as a multiple of the size of the scene.
 const GROUND_SIZES: i64 = 12;
-/// Search distance for ground in metres. For a scene larger than that, the search distance is the size of the scene. A
-/// falling ball should be shown with the floor below it, but not with a floor so far away that the ball becomes
-/// invisible.
+/// Search distance for ground in metres. If the scene is larger than this distance, the search distance is the size of
+/// the scene. A falling ball should be shown with the floor below it, but not with a floor so far away that the ball
+/// becomes invisible.
 const GROUND_REACH: Fx = fx!(16);
 /// Maximum size in metres of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
 /// The window around the bodies that can move, their joints, and the ground near them, with a margin.
 ///
-/// A body far away from all others is left out, because it would make the rest too small to see. A large fixed shape
-/// contributes only its point nearest to the middle of the shown bodies. If no body can move, the window shows the
-/// fixed shapes of at most 512 m. The window moves with the bodies.
+/// The window leaves out a body far away from all others, because this body would make the others too small to see. A
+/// large fixed shape contributes only its point nearest to the middle of the shown bodies. If no body can move, the
+/// window shows the fixed shapes of at most 512 m. The window moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -41,7 +41,7 @@ pub fn fit(world: &World) -> Aabb {
     if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
 }
 
-/// The box around a body's shapes, or its centre if it has none.
+/// The box around a body's shapes, or its centre of mass if it has no shapes.
 fn bounds_of(world: &World, body: &Body) -> Aabb {
     let rotation = body.rotation();
     let shapes = body.shapes().iter().filter_map(|&id| world.shape(id));

@@ -26,8 +26,8 @@ pub struct Legend {
     pub figures: String,
     /// State hash of the world.
     pub hash: StateHash,
-    /// Names of the styles in the picture, each once, with the colour as `0xRRGGBB`. Styles with many hues have the
-    /// colour of text.
+    /// Names of the styles in the picture, each once, with the colour as `0xRRGGBB`. Styles with many hues are listed
+    /// in the colour of the legend's text.
     pub names: Vec<(&'static str, u32)>,
 }
 

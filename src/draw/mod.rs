@@ -1,11 +1,11 @@
 //! Pictures of a world: plain primitives for any renderer, and an SVG of a tick.
 //!
 //! [`primitives`] describes the visible objects in world coordinates, with a meaning ([`Style`]) instead of a colour,
-//! so that all renderers show the same picture. [`svg`] is one of them.
+//! so that all renderers show the same picture. [`svg`] is one of these renderers.
 //!
-//! The contacts are those solved in the last tick. They were found before the bodies moved, so the contacts of a fast
-//! body lag behind its outline by one tick. After [`World::restore`] or [`World::from_bytes`] there are none until the
-//! next tick.
+//! A picture shows the contacts that the last tick solved. The tick found them before the bodies moved, so the contacts
+//! of a fast body lag behind its outline by one tick. After [`World::restore`] or [`World::from_bytes`], there are no
+//! contacts until the next tick.
 //!
 //! Primitives and SVG use no floating-point numbers: the same world gives the same text on every machine, so that
 //! pictures can be compared with `diff`.

@@ -26,7 +26,8 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// [`primitives`], but passes each primitive to `found`. A large world has about a hundred thousand.
+/// [`primitives`], but passes each primitive to `found` instead of collecting all of them: a large world has about a
+/// hundred thousand.
 pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {
@@ -105,7 +106,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
             _ => style,
         };
         let mut add = |form| found(primitive(style, subject, form));
-        // The outline that collision detection uses, so that a picture cannot hide an error of the pose.
+        // Draws the outline that collision detection uses, so that a picture cannot hide an error of the pose.
         let PosedShape { centre, outline, .. } = PosedShape::new(&shape.def, body, rotation);
         match outline {
             Outline::Circle { radius } => {

@@ -1,8 +1,8 @@
 //! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, relative to the middle of the
 //! picture and with y flipped.
 //!
-//! Coordinates are integers in hundredths of a pixel, which are printed alike everywhere. The scale is a fraction of
-//! two integers, because a fixed-point number would have no digits left for a window as wide as the world.
+//! Coordinates are integers in hundredths of a pixel, which print as the same text on every machine. The scale is a
+//! fraction of two integers, because a fixed-point number would have no digits left for a window as wide as the world.
 
 use core::fmt;
 
@@ -58,7 +58,7 @@ impl Screen {
         let (pixels_x, pixels_y) = (i128::from(size.0), i128::from(size.1));
         let wide = width * pixels_y >= height * pixels_x;
         let (pixels, units) = if wide { (pixels_x, width) } else { (pixels_y, height) };
-        // 16 pixels are for the width of strokes.
+        // Adds 16 pixels for the width of strokes.
         let reach = |size: i128| Fx::from_bits(saturate_wide((size / 2 + 16) * units / pixels + 1));
         let reach = Vec2::new(reach(pixels_x), reach(pixels_y));
         let centre = window.centre();

@@ -1,8 +1,8 @@
 //! Draws a tick as an SVG document.
 //!
 //! The outlines of a body have its id and its name as a tooltip. The lines and points of each other style share one
-//! path, so that a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that a picture can
-//! be enlarged in a browser to see exactly where two shapes touch.
+//! path, so that a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that an enlarged
+//! picture in a browser shows exactly where two shapes touch.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -46,7 +46,8 @@ pub fn svg(world: &World, view: &View) -> String {
         ),
     );
     add_legend(&mut text, world, view, &layers);
-    // A nested picture clips its contents without an id, which could clash in a page with several pictures.
+    // A nested `svg` element clips its contents. A clip path would need an id, and ids could clash in a page with
+    // several pictures.
     push(
         &mut text,
         format_args!(
@@ -122,7 +123,7 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
     layers
 }
 
-/// Whether the style is that of outlines.
+/// Whether primitives of the style are outlines, which have tooltips.
 fn has_tooltip(style: Style) -> bool {
     matches!(
         style,

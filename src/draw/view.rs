@@ -49,7 +49,7 @@ impl Default for View {
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// This window, centred. With another aspect ratio, the picture shows more of the world in one direction. Sides
-    /// shorter than 2 cm are extended to 2 cm.
+    /// This window, centred. If the picture has another aspect ratio, it shows more of the world in one direction.
+    /// Sides shorter than 2 cm are extended to 2 cm.
     Window(Aabb),
 }

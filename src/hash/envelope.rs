@@ -37,7 +37,7 @@ pub(crate) struct Opened<'a> {
 }
 
 impl Envelope {
-    /// The bytes of a file with this body.
+    /// Returns the bytes of a file with this body and its hash.
     pub(crate) fn seal<T: Serialize>(&self, semantics: u32, body: &T) -> Vec<u8> {
         let mut bytes = self.magic.to_vec();
         bytes.extend_from_slice(&self.format.to_le_bytes());

@@ -58,7 +58,7 @@ impl fmt::Display for OrNothing<'_> {
 }
 
 /// The fields that differ or are missing from one list, in the order of the first list. A field that only the second
-/// list has is placed by its position in that list.
+/// list has is placed before the field that follows it in the second list.
 #[must_use]
 pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     let (positions_a, positions_b) = (positions(a), positions(b));

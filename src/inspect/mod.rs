@@ -36,8 +36,8 @@ pub const DEPTH_MAX: u32 = 128;
 
 /// The fields of a value, in serialization order.
 ///
-/// An `Option` results in the fields of its value or in `none`, a variant in its name and its fields, and an empty list
-/// or map in a field of its own.
+/// An `Option` results in the fields of its value, or in a field with the value `none`. An enum variant results in a
+/// field with its name, followed by its own fields. An empty list or map results in one field.
 ///
 /// # Errors
 /// [`InspectError`] if the value's `Serialize` returns an error or the value is nested deeper than [`DEPTH_MAX`].

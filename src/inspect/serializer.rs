@@ -50,7 +50,7 @@ pub(super) struct Collector {
     path: String,
     subject: Option<(usize, usize)>,
     depth: u32,
-    /// Type name of the current value. It only decides how a number is written.
+    /// Type name of the current value. It only decides which kind of [`Value`] represents a number.
     kind: &'static str,
 }
 
@@ -109,7 +109,8 @@ impl Collector {
         result
     }
 
-    /// Number of fraction bits of a fixed-point number, which its type name contains as binary digits, `B1` and `B0`.
+    /// Number of fraction bits of a fixed-point number. The type name contains this number as binary digits, `B1` and
+    /// `B0`.
     pub(super) fn fraction_bits(&self) -> Option<u32> {
         let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;
         let digits = name.split(|c: char| !c.is_alphanumeric()).filter_map(|word| match word {

@@ -176,7 +176,7 @@ fn depth_is_limited() {
         chain = Chain(Some(alloc::boxed::Box::new(chain)));
     }
     assert!(matches!(fields(&chain), Err(InspectError { why }) if why.contains("deep")));
-    // Dropped iteratively, because the derived drop would recurse to the full depth.
+    // Drops the chain iteratively, because the derived drop would recurse to the full depth.
     while let Some(next) = chain.0.take() {
         chain = *next;
     }

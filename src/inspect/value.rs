@@ -134,8 +134,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// Path: names separated by dots, and indices in brackets. Empty if the inspected value has no parts, and for the
-    /// name of an inspected enum variant.
+    /// Path: names separated by dots, and indices in brackets. The path is empty if the inspected value has no parts.
+    /// It is also empty for the field with the variant's name if the inspected value is an enum.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
@@ -148,8 +148,8 @@ impl Field {
         self.subject.map(|(end, _)| &self.path[..end])
     }
 
-    /// Section that contains the field, such as `world.bodies`: the path of the outermost map. Without a map, the first
-    /// name of the path, or nothing if the path begins with an index.
+    /// Section that contains the field, such as `world.bodies`: the path of the outermost map. For a field that is not
+    /// in a map, the first name of the path, or an empty text if the path begins with an index.
     #[must_use]
     pub fn section(&self) -> &str {
         let end = match self.subject {

@@ -42,7 +42,7 @@ pub enum StartError {
     Refused(SetupError),
     /// The setup takes more work than the budget.
     TooMuchWork {
-        /// Work units, or a lower bound of them.
+        /// Work units of the setup, or a lower bound of them.
         work: u64,
         /// The budget in work units.
         max: u64,
@@ -188,8 +188,8 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// Work units of the next tick: an upper bound, without the work that the world counts during the step. This bound
-    /// limits the computing time of an untrusted file. [`World::work`] is the bound of a world.
+    /// An upper bound of the work units of the next tick, without the work that the world counts during the step. This
+    /// bound limits the computing time of an untrusted file. [`World::work`] is the bound of a world.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
     /// Input of a seat without a player: before a player has joined, and after the player has left. To distinguish

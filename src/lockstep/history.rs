@@ -3,7 +3,7 @@ use alloc::collections::VecDeque;
 use super::Game;
 use crate::hash::StateHash;
 
-/// The game after a tick.
+/// The state of a game after a number of ticks, as [`History`] stores it.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, History, Past, Sandbox, SandboxSetup};

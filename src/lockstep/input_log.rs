@@ -66,7 +66,8 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     /// Encodes the inputs of all players, then decodes the bytes.
     ///
     /// # Errors
-    /// [`InputError`] unless there is one input per player and the bytes decode to inputs with the same encoding.
+    /// [`InputError`] if the number of inputs is not the number of players, or if the bytes do not decode to inputs
+    /// with the same encoding.
     pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
         Self::from_bytes(encode_checked(inputs, players)?, players)
     }
@@ -180,7 +181,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
     /// Logs the inputs of the next tick. Returns the inputs as decoded from their bytes, to step the game with.
     ///
     /// # Errors
-    /// [`InputError`] if the inputs cannot be logged. The log is unchanged.
+    /// [`InputError`] if the inputs cannot be logged. The log is then unchanged.
     pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
         let last = self.runs.last().map(|run| &run.inputs);
         let new = EncodedInputs::new_after(last, inputs, self.players)?;
@@ -190,7 +191,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
     /// Logs the encoded inputs of the next tick, and returns them decoded.
     ///
     /// # Errors
-    /// [`InputError::Count`] unless there is one input per player. The log is unchanged.
+    /// [`InputError::Count`] if the number of inputs is not the number of players. The log is then unchanged.
     pub fn push_encoded(&mut self, inputs: &EncodedInputs<I>) -> Result<&[I], InputError>
     where
         I: Clone,

@@ -1,4 +1,4 @@
-//! The [`Game`] trait, over which recording, verification, rollback and the tools are generic.
+//! The [`Game`] trait. Recording, verification, rollback and the tools are generic over it.
 
 mod game;
 mod history;

@@ -84,8 +84,8 @@ impl Sandbox {
         &self.world
     }
 
-    /// The world, for settings outside of the state, such as the solver's backend. A change of the state would be
-    /// missing from the inputs, so that a replay diverges.
+    /// The world, for settings outside of the state, such as the solver's backend. Do not change the state: the change
+    /// would be missing from the inputs, and a replay would diverge.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -113,8 +113,8 @@ impl Game for Sandbox {
         }
     }
 
-    /// Charges the cost of each command before its execution, and then the work that the world has counted during it. A
-    /// `work_max` above 100 million counts as 100 million.
+    /// Charges the cost of each command before its execution, and then the work that the world has counted during the
+    /// execution. A `work_max` above 100 million counts as 100 million.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
@@ -154,7 +154,8 @@ impl Game for Sandbox {
             if !is_constant || self.world.execute(command).is_err() {
                 self.refused = self.refused.saturating_add(1);
             }
-            // The verifier discards the state. Further commands could take any time.
+            // The verifier discards the state of an exhausted world. Stops here, because further commands could take
+            // any time.
             if self.world.is_work_exhausted() {
                 return;
             }

@@ -28,7 +28,7 @@ impl Aabb {
     pub(crate) const NOWHERE: Self =
         Aabb { lower: Vec2::new(Fx::MAX, Fx::MAX), upper: Vec2::new(Fx::MIN, Fx::MIN) };
 
-    /// Creates a box from its corners, without the check [`is_valid`](Self::is_valid).
+    /// Creates a box from its corners, without checking that it [`is_valid`](Self::is_valid).
     #[inline]
     #[must_use]
     pub const fn new(lower: Vec2<Fx>, upper: Vec2<Fx>) -> Self {
@@ -41,14 +41,14 @@ impl Aabb {
         points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
     }
 
-    /// Whether the lower corner is at most the upper corner on both axes. Other methods require this.
+    /// Whether the lower corner is at most the upper corner on both axes. Other methods require a valid box.
     #[inline]
     #[must_use]
     pub fn is_valid(self) -> bool {
         self.lower.x <= self.upper.x && self.lower.y <= self.upper.y
     }
 
-    /// Smallest box around this one with corners at multiples of `2^shift` units.
+    /// Smallest box around this one with corners at multiples of `2^shift` units of [`Fx`].
     #[inline]
     #[must_use]
     pub(crate) fn rounded_out(self, shift: u32) -> Self {
@@ -94,7 +94,7 @@ impl Aabb {
         Aabb::new(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 
-    /// Grows the box by a margin in metres on all sides, saturated. A negative margin may make it invalid.
+    /// Grows the box by a margin in metres on all sides, saturated. A negative margin may make the box invalid.
     #[inline]
     #[must_use]
     pub fn expanded(self, margin: Fx) -> Self {
@@ -151,7 +151,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! Relations between boxes are compared with those between the sets of grid points that the boxes contain.
+    //! The tests compare relations between boxes with relations between the sets of grid points that the boxes contain.
 
     use super::*;
     use crate::fx;

@@ -1,7 +1,7 @@
 //! Angles as a fraction of a turn.
 //!
-//! `turns = bits / 2^32`, a resolution of 1.46e-9 rad. Addition wraps as the circle does. The angle between two bodies
-//! is a subtraction, while rotations stored as complex numbers would need an `atan2` per joint.
+//! `turns = bits / 2^32`, a resolution of 1.46e-9 rad. Addition wraps at a full turn. The angle between two bodies is a
+//! subtraction, while rotations stored as complex numbers would need an `atan2` per joint.
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
@@ -58,7 +58,7 @@ impl Angle {
         self.0
     }
 
-    /// `fraction` times a rotation of `turns` units of 2^-32 turn, which may exceed a turn.
+    /// `fraction` times a rotation of `turns` units of 2^-32 turn. The rotation may exceed a turn.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     pub(crate) const fn from_wide_turns(turns: i64, fraction: Fx) -> Self {
         let part = super::formats::round_shift_wide(turns as i128 * fraction.to_bits() as i128, 32);
@@ -265,7 +265,7 @@ mod tests {
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
             // The error of sine and cosine across the direction is at most 0.71 units of 2^-32 turn. With 0.68 for
-            // `Angle::of`, the sum is below 2, and the difference is an integer.
+            // `Angle::of`, the sum is below 2, so the difference, which is an integer, is at most 1.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

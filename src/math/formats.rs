@@ -11,12 +11,13 @@ use fixed::{FixedI32, FixedI64};
 pub type Fx = FixedI64<U32>;
 /// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
-/// A speed in m/s: ±1024, resolution 4.8e-7. Also angular velocity times the radius of gyration, and the impulse of a
-/// row over its effective mass.
+/// A speed in m/s: ±1024, resolution 4.8e-7. Also an angular velocity times the radius of gyration, and the impulse of
+/// a constraint row divided by its effective mass.
 pub type Speed = FixedI32<U21>;
 /// Separation of a contact, or gap of a joint, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
-/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Kept within ±16, so that differences fit.
+/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. The solver keeps it within ±16, so that
+/// differences fit.
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;
@@ -31,7 +32,7 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // All but one of the `shift` bits are dropped before the addition, which can overflow only for a shift of 1.
+    // Drops all but one of the `shift` bits before the addition, so that only a shift of 1 can overflow.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
@@ -79,7 +80,7 @@ pub const fn div_round(n: i128, d: i128) -> i128 {
     let (n, d) = (n.unsigned_abs(), d.unsigned_abs());
     let floor = n / d;
     let remainder = n - floor * d;
-    // Comparing the remainder, rather than adding d / 2 to n, cannot overflow.
+    // Adding d / 2 to n could overflow, so the remainder is compared instead.
     let quotient = if remainder >= d - remainder { floor + 1 } else { floor };
     match (quotient > i128::MAX as u128, negative) {
         (true, true) => i128::MIN,

@@ -69,7 +69,8 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
         if point.y < lower.y || upper.y < point.y {
             continue;
         }
-        // An edge includes its lower end only, so a corner counts once where the border crosses the ray.
+        // Counts the edges that a ray to the right crosses. An edge includes only its lower end, so a corner at which
+        // the border crosses the ray counts once.
         match orientation(lower, upper, point) {
             Orientation::Collinear if in_box(point, lower, upper) => return true,
             Orientation::CounterClockwise if point.y < upper.y => inside = !inside,
@@ -110,7 +111,7 @@ fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>)
     if on_segment(a0, b0, b1) {
         return Some(a0);
     }
-    // A shared part begins at the end of b nearer to `a0`.
+    // The shared part, if there is one, begins at the end of `b` that is on `a` and nearer to `a0`.
     [b0, b1]
         .into_iter()
         .filter(|&end| on_segment(end, a0, a1))

@@ -119,7 +119,8 @@ mod tests {
             if m.determinant().abs() < fx!(0.5) {
                 continue;
             }
-            // Half a unit in the inverse is multiplied by |M v| <= 128, and half a unit in M v by entries <= 16.
+            // An error of half a unit in the inverse is multiplied by |M v| <= 128, and an error of half a unit in M v
+            // by entries <= 16.
             let there = m.inverse().unwrap().apply(m.apply(v)) - v;
             assert!(
                 there.x.abs().to_bits() <= 145 && there.y.abs().to_bits() <= 145,
@@ -152,7 +153,7 @@ mod tests {
             let v: Vec2<Unit> = Vec2::new(entry(), entry());
             let wide =
                 Mat2::new(Fx::from_num(m.a11), Fx::from_num(m.a12), Fx::from_num(m.a21), Fx::from_num(m.a22));
-            // In units of `Fx`, the errors are at most 2 and 0.5, and the difference is an integer.
+            // In units of `Fx`, the errors are at most 2 and 0.5. The difference is an integer, so it is at most 2.
             let apart = m.apply::<_, U30>(v).widen() - wide.apply(v.widen());
             assert!(apart.x.abs().to_bits() <= 2 && apart.y.abs().to_bits() <= 2, "{apart:?}");
             let determinant: Unit = m.determinant();

@@ -28,7 +28,7 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
-    /// Reciprocal of infinity: a body that does not rotate.
+    /// Reciprocal of infinity, for a body that does not rotate.
     pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
 
     /// `1 / x`, with a relative error of at most 2^-31.

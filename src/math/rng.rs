@@ -4,15 +4,15 @@
 //! Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`. The state
 //! has 16 bytes, half that of xoshiro256**, and the period is 2^64. Not cryptographically secure.
 //!
-//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019). They may take
-//! several draws, the number of which depends only on the state and the bound.
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019). A bounded number
+//! may take several draws. Their count depends only on the state and the bound.
 
 use serde::{Deserialize, Serialize};
 
 use super::angle::Angle;
 use super::formats::Fx;
 
-/// A random number generator. It belongs in the game state, to be rolled back and hashed with it.
+/// A random number generator. Store it in the game state, so that rollbacks restore it and the state hash covers it.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Rng};
@@ -120,8 +120,8 @@ impl Rng {
         }
     }
 
-    /// Advances the state. Bit 0 of the increment is set here, because a deserialized increment may be even, which
-    /// would shorten the period.
+    /// Advances the state. A deserialized increment may be even, which would shorten the period, so bit 0 of the
+    /// increment is set here.
     #[inline]
     const fn step(&mut self) {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment | 1);

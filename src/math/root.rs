@@ -1,8 +1,8 @@
 //! Square roots, lengths and unit vectors.
 //!
 //! A length is the integer square root of an exact sum of squares. A unit vector is `v y` with `y = 1 / |v|` from
-//! Newton's iteration `y <- y (3 - n y^2) / 2` with `n = |v|^2`, which needs no division. Vectors along an axis are
-//! exact.
+//! Newton's iteration `y <- y (3 - n y^2) / 2` with `n = |v|^2`. The iteration needs no division. Vectors along an axis
+//! are exact.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -33,7 +33,7 @@ pub const fn sqrt(x: Fx) -> Option<Fx> {
 /// ```
 #[must_use]
 pub const fn hypot(x: Fx, y: Fx) -> Fx {
-    // Frequent cases.
+    // Vectors along an axis are frequent, and need no root.
     if x.to_bits() == 0 {
         return y.saturating_abs();
     }
@@ -70,7 +70,7 @@ impl Vec2<Fx> {
     pub const fn distance(self, other: Self) -> Fx {
         let x = self.x.to_bits().abs_diff(other.x.to_bits());
         let y = self.y.to_bits().abs_diff(other.y.to_bits());
-        // A difference of 2^63 or more saturates. Smaller ones have squares that fit.
+        // A difference of 2^63 or more saturates. The squares of smaller differences fit.
         if (x | y) >> 63 != 0 { Fx::MAX } else { saturated(sqrt_rounded_wide(sum_of_squares_wide(x, y))) }
     }
 
@@ -79,7 +79,7 @@ impl Vec2<Fx> {
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
-        // Both paths give the same bits, because all shifts are exact.
+        // The 32-bit path and the wide path give the same bits, because all shifts are exact.
         if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
             return match polar(x, y) {
                 Some((direction, _)) => Some(direction),
@@ -157,13 +157,14 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // The root of m = n 2^shift is m / sqrt(m). The errors of the inverse (0.51) and of rounding (one half) leave it at
-    // most one away from the nearest root.
+    // The root of m = n 2^shift is m / sqrt(m). The errors of the inverse (0.51) and of rounding (one half) leave
+    // `root` at most one away from the nearest root.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
     let root = (product + (1 << (drop - 1))) >> drop;
-    // `root` is nearest if (root - 1/2)^2 < n < (root + 1/2)^2. For an integer n the quarters can be dropped.
+    // `root` is nearest if (root - 1/2)^2 < n < (root + 1/2)^2. The squares are root^2 ± root + 1/4, and the 1/4 makes
+    // no difference for an integer n.
     let root = if root * root - root >= n { root - 1 } else { root };
     if root * root + root < n { root + 1 } else { root }
 }
@@ -175,7 +176,7 @@ const fn narrowed(x: i64) -> Option<i32> {
     if low as i64 == x { Some(low) } else { None }
 }
 
-/// Converts a magnitude in units of 2^-63. It may exceed 1 by a rounding error, which this conversion rounds away.
+/// Converts a magnitude in units of 2^-63. If a rounding error makes the magnitude exceed 1, the result is 1.
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
     let rounded = ((magnitude + (1 << 32)) >> 33) as i32;
@@ -184,8 +185,8 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
 
 /// `2^63 / sqrt(n)` with an error of at most 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64`, this is `1 / sqrt(m)` in units of 2^-31, between 1 and 2. The initial parabola has a relative
-/// error of 2.4e-2. Each step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64`, the result is `1 / sqrt(m)` in units of 2^-31, between 1 and 2. The initial parabola has a
+/// relative error of 2.4e-2. Each step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -200,8 +201,7 @@ const fn inverse_root(n: u64) -> u64 {
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The residual `1 - m y^2` is small and therefore exact modulo 2^64. Its term 1 is 2^76 units, which is 0 modulo
-    // 2^64.
+    // The residual `1 - m y^2` is small and therefore exact modulo 2^64. The 1 is 2^76 units, which is 0 modulo 2^64.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31

@@ -1,7 +1,7 @@
 //! A rotation as cosine and sine: `R v = (c x - s y, s x + c y)`.
 //!
-//! It is derived from an [`Angle`] and not integrated, so that the length of `(c, s)`, 1 within two units of 2^-30,
-//! does not drift.
+//! A rotation is computed from an [`Angle`] and not integrated. The length of `(c, s)` therefore stays within two units
+//! of 2^-30 of 1, and does not drift.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;

@@ -1,13 +1,14 @@
 //! Sine, cosine and arc tangent in integer arithmetic.
 //!
-//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn, to which
-//! the turn is folded by symmetry. The sine is odd, the cosine even, and both are exact at the quarter turns.
-//! `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane is folded at the
-//! diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn. Symmetry
+//! reduces all other angles to this range. The sine is odd, the cosine even, and both are exact at the quarter turns.
+//! `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. Reflections at the axes and at
+//! the diagonal, and `atan t = pi/4 - atan((1 - t) / (1 + t))`, reduce all directions to this range.
 //!
 //! The coefficients are minimax, from a Remez exchange with 50 digits weighted by absolute error, with the sine
-//! constrained to 1 at the quarter turn. The two leading coefficients of the sine were moved by one unit, which a sweep
-//! showed to be better. An interpolated table would need 130 KiB for the same error, and CORDIC 30 iterations.
+//! constrained to 1 at the quarter turn. The two leading coefficients of the sine differ from the result of the
+//! exchange by one unit, because a sweep over the angles then found smaller errors. An interpolated table would need
+//! 130 KiB for the same error, and CORDIC 30 iterations.
 //!
 //! Largest error: 0.79 units of 2^-30 for sine and cosine (over all 2^32 angles), 0.68 units of 2^-32 turn for the arc
 //! tangent (over 2e8 random vectors).
@@ -28,8 +29,8 @@ pub(super) const fn sine(angle: u32) -> i32 {
 /// Sine of `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
-    /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48, with which each product fits 64 bits. All
-    /// but the last include half a unit, so that dropping bits rounds to nearest.
+    /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48. In these units, each product fits 64 bits.
+    /// All but the last include half a unit, so that dropping bits rounds to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -68,7 +69,8 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     let from_diagonal = short > (long >> 7) * 53;
     let (numerator, denominator) = if from_diagonal { (long - short, long + short) } else { (short, long) };
 
-    // The quotient is below one half, so the doubled numerator fits, and one division gives 32 bits.
+    // The quotient is below one half, so the doubled numerator fits 64 bits, and one division gives 32 bits of the
+    // quotient.
     let spare = denominator.leading_zeros();
     let divisor = (denominator << spare) >> 31;
     let t = (((numerator << spare) << 1) + divisor / 2) / divisor;

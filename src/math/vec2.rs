@@ -194,7 +194,8 @@ impl Vec2<Fx> {
         Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))
     }
 
-    /// A vector in the direction from this point to another: their difference, or half of it if it does not fit.
+    /// A vector in the direction from this point to another: the difference of the points, or half of the difference if
+    /// it does not fit.
     pub(crate) fn towards(self, to: Self) -> Self {
         match (to.x.checked_sub(self.x), to.y.checked_sub(self.y)) {
             (Some(x), Some(y)) => Vec2::new(x, y),
@@ -259,7 +260,7 @@ const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 
-/// `a (1 - t) + b t`, rounded once, saturated. `b - a` could overflow.
+/// `a (1 - t) + b t`, rounded once, saturated. `a + (b - a) t` could overflow in `b - a`.
 const fn interpolate(a: Fx, b: Fx, t: Unit) -> Fx {
     let t = t.to_bits() as i128;
     let sum = a.to_bits() as i128 * ((1 << Unit::FRAC_NBITS) - t) + b.to_bits() as i128 * t;

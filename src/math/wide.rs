@@ -81,7 +81,7 @@ impl Difference {
         sum_of_products(self.x, other.x, self.y, other.y)
     }
 
-    /// `|x| + |y|`, which grows along any line from the origin.
+    /// `|x| + |y|`, a distance that grows along any ray from the origin.
     pub(super) fn manhattan(self) -> u128 {
         u128::from(self.x.magnitude) + u128::from(self.y.magnitude)
     }
@@ -104,8 +104,8 @@ fn sum_of_products(a: Part, x: Part, b: Part, y: Part) -> Signed {
     Signed { negative: larger.negative && magnitude != Wide::ZERO, magnitude }
 }
 
-/// `origin + along numerator / denominator`, rounded to nearest, ties towards +infinity, so that the point does not
-/// depend on which end of the segment is the origin. `None` if the fraction is not between 0 and 1.
+/// `origin + along numerator / denominator`, rounded to nearest. Ties round towards +infinity, so that the point does
+/// not depend on which end of the segment is the origin. `None` if the fraction is not between 0 and 1.
 pub(super) fn point_at(
     origin: Vec2<Fx>,
     along: Difference,
@@ -126,7 +126,7 @@ pub(super) fn point_at(
             Ordering::Greater => floor + 1,
         };
         let bits = origin.to_bits();
-        // The result is between two points, and in range even if the offset has 64 bits.
+        // The result is between the ends of the segment. It is in range even if the offset has 64 bits.
         Fx::from_bits(if part.negative {
             bits.wrapping_sub_unsigned(forward)
         } else {
@@ -182,7 +182,7 @@ mod tests {
         assert!(sum > top);
     }
 
-    /// A common factor of 2^64 leads to the slow branch, unless `x numerator` is below 2^64.
+    /// A common factor of 2^64 makes the second call take the slow branch, except where `x numerator` is below 2^64.
     #[test]
     fn long_division_agrees_with_the_short_one() {
         let mut rng = Rng::new(1);

@@ -23,7 +23,7 @@ use crate::session::ConfigError;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PeerError {
     /// The setup or the checkpoint interval is invalid, or a replay cannot represent the game, its inputs or its
-    /// claims. An own input that does not survive encoding and decoding is this error even if there is no replay.
+    /// claims. An own input that changes when it is encoded and decoded gives this error even if there is no replay.
     Record(RecordError),
     /// A value is out of its range. The error names a field of [`PeerOptions`](super::PeerOptions), such as `delay.0`,
     /// a method, such as `Game::tick_rate`, or the `bytes of the default input`.

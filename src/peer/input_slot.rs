@@ -20,7 +20,7 @@ pub(super) enum InputSlot {
 }
 
 impl InputSlot {
-    /// The slot for inputs as long as the default one, or of up to `bytes` bytes.
+    /// The slot for inputs of up to `bytes` bytes. Without `bytes`: for inputs as long as the default input.
     pub(super) fn of<I: Serialize + Default>(bytes: Option<u16>) -> Result<Self, PeerError> {
         let default = codec::encode(&I::default()).len();
         match (bytes, u16::try_from(default)) {
@@ -33,13 +33,13 @@ impl InputSlot {
     /// Bytes of an input in the session.
     pub(super) fn bytes(self) -> u16 {
         match self {
-            // A session transmits at least one byte.
+            // A session transmits at least one byte per input.
             InputSlot::Fixed(bytes) => bytes.max(1),
             InputSlot::Prefixed(bytes) => bytes.saturating_add(LENGTH_BYTES),
         }
     }
 
-    /// Appends an input. Like a recorder, refuses an input that does not survive encoding and decoding.
+    /// Appends an input. Like a recorder, refuses an input that changes when it is encoded and decoded.
     pub(super) fn put<I: Serialize + DeserializeOwned>(
         self,
         input: &I,

@@ -10,7 +10,7 @@ use crate::session::Address;
 
 /// Additional delay of a reordered packet.
 const REORDER_DELAY: Duration = Duration::from_millis(20);
-/// Maximum number of packets waiting for a receiver. Further ones are lost.
+/// Maximum number of packets that wait for a receiver. Further packets are lost.
 const QUEUE_MAX: usize = 8192;
 
 /// Conditions of a link in one direction. The default has no delay or loss.
@@ -49,7 +49,8 @@ impl LinkConditions {
     }
 }
 
-/// A network in memory for tests. The caller sets its time. A seed and a sequence of calls determine delays and losses.
+/// A network in memory for tests. The caller sets its time. The seed and the sequence of calls determine delays and
+/// losses.
 ///
 /// ```
 /// use core::time::Duration;
@@ -126,7 +127,7 @@ impl Network {
         })))
     }
 
-    /// The socket with this number. Sockets with one number share a receive queue.
+    /// The socket with this number. Sockets with the same number share a receive queue.
     #[must_use]
     pub fn port(&self, number: u32) -> Port {
         Port { network: self.clone(), number }

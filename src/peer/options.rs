@@ -28,8 +28,8 @@ pub struct PeerOptions {
     pub delay: (u16, u16),
     /// Time after which the others continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
     pub patience: Duration,
-    /// Number of seats taken before the first tick: 0 to the number of players of the game. That of the host counts.
-    /// Default: 2.
+    /// Number of seats taken before the first tick: 0 to the number of players of the game. The value of the host
+    /// counts. Default: 2.
     pub start_with: u8,
     /// Number of own seats, at most the number of players. 0 makes a host a dedicated server; a joining player requests
     /// at least 1. Default: 1.

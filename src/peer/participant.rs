@@ -223,12 +223,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
     /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
-    /// Inputs that were issued count for one tick: forget key presses then. When the input delay grows, further calls
-    /// ask for the inputs of the additional ticks before the next tick is played.
+    /// A call issues the inputs of one tick: forget key presses then. When the input delay grows,
+    /// [`is_due`](Peer::is_due) remains true: further calls issue inputs of additional ticks, and then the next tick is
+    /// played.
     ///
     /// # Errors
-    /// [`PeerError`] if there is not one input for each own seat, an input cannot be encoded, or the game or its replay
-    /// cannot continue. Inputs that are not due yet are no error: the result is `false`.
+    /// [`PeerError`] if the number of inputs is not the number of own seats, an input cannot be encoded, or the game or
+    /// its replay cannot continue. Inputs that are not due yet are no error: the result is `false`.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
         let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);
@@ -320,7 +321,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Sends the request to join to this contact, for example after a time without an answer. Discards a session in
-    /// progress; the new one has another [`PeerId`].
+    /// progress; the new session has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
     }
@@ -335,7 +336,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
 
     /// Requests an end of the match after a number of ticks, as [`Session::end_at`] does.
     ///
-    /// The request of one peer ends the match for all, and [`Peer::game`] may depend on wrong guesses. Decide by
+    /// The request of one peer ends the match for all, and [`Peer::game`] may depend on wrong guesses, so decide by
     /// confirmed ticks. Here, the number of ticks after which a game was won is part of its state:
     ///
     /// ```
@@ -384,8 +385,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Ends the replay after the last final tick, and returns the rest of it and the game. First leave or end the
-    /// match, and call [`update`](Peer::update) until [`Status::Closed`].
+    /// Ends the replay after the last final tick, and returns the rest of the replay and the game. First leave or end
+    /// the match, and call [`update`](Peer::update) until [`Status::Closed`].
     ///
     /// # Errors
     /// [`PeerError`] if the replay cannot be finished.

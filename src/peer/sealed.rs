@@ -4,9 +4,9 @@
 //! XChaCha20-Poly1305. Its nonce consists of the sender, eight zero bytes and the counter. A packet of 1200 bytes
 //! becomes 1232 and fits with headers into 1280, the smallest maximum packet size of IPv6.
 //!
-//! **A nonce must never be used twice with one key.** Within one [`Sealed`], the counter prevents this. Between
-//! several, such as before and after a restart, the sender prevents it: `Sealed::new` draws the sender from 2^64
-//! numbers. Two of `n` senders are equal with a probability of about `n^2 / 2^65`: for 10 000 senders, 3 in 10^12.
+//! **A nonce must never be used twice with one key.** Within one [`Sealed`], the counter prevents this. Between several
+//! [`Sealed`], such as before and after a restart, the sender number prevents it: `Sealed::new` draws the sender from
+//! 2^64 numbers. Two of `n` senders are equal with a probability of about `n^2 / 2^65`: for 10 000 senders, 3 in 10^12.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -31,8 +31,9 @@ const SENDERS_MAX: usize = 1024;
 /// A transport whose packets can be read and written only with the key of the match.
 ///
 /// Drops packets that were forged, changed or truncated, arrive again, or come back to their sender. Addresses and
-/// sizes are visible. A member can pose as another one. Old packets are accepted again after a restart, and from
-/// senders whose replay window was removed. Old packets do no harm to a session, because its rows have versions.
+/// sizes are visible. A member of the match can pose as another member. Old packets are accepted again after a restart,
+/// and from senders whose replay window was removed. Old packets do no harm to a session, because its status records
+/// have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
@@ -59,7 +60,7 @@ pub struct Sealed<T> {
 #[derive(Clone, Debug)]
 struct Window {
     sender: u64,
-    /// Counter after the newest packet.
+    /// Counter of the newest packet, plus 1.
     next: u64,
     /// Bit for each of the last [`WINDOW`] counters, at the counter modulo `WINDOW`.
     seen: [u64; WINDOW_WORDS],
@@ -167,7 +168,7 @@ impl<T> Sealed<T> {
         let mut body = body.to_vec();
         let tag = Tag::from(*tag);
         self.cipher.decrypt_in_place_detached(&nonce(sender, counter), b"", &mut body, &tag).ok()?;
-        // Packets that are not authentic do not get here, so they do not change the windows.
+        // Only authentic packets get here, so forged packets cannot change the windows.
         self.received += 1;
         let at = known.unwrap_or_else(|| self.remember(sender));
         let window = self.windows.get_mut(at)?;

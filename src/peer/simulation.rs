@@ -57,8 +57,9 @@ impl<G: Game> Simulation<G> {
         }
     }
 
-    /// Continues from a received state. If the state is later than tick 0, there is no replay, for lack of the earlier
-    /// inputs. A replay that has ticks is of another match, or of a part of this one.
+    /// Continues from a received state. Drops the replay if the state is later than tick 0, because the earlier inputs
+    /// are missing. Also drops a replay that already has ticks, because they belong to another match or to an earlier
+    /// part of this match.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
@@ -174,7 +175,7 @@ impl<G: Game> Simulation<G> {
         bytes
     }
 
-    /// Ends the replay after the last committed tick. Returns the game after it, and the rest of the replay.
+    /// Ends the replay after the last committed tick. Returns the game after that tick, and the rest of the replay.
     pub(super) fn finish(mut self) -> Result<(G, Vec<u8>), PeerError> {
         self.play_to(self.committed)?;
         let replay = match self.recorder.take() {
@@ -204,7 +205,8 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. `hashes` has the other peer's hash at the seats of that peer.
+    /// Creates the report of a desync. `hashes` has an entry for each seat: the hash of the other peer at its seats,
+    /// `None` at other seats.
     pub(super) fn report(
         &mut self,
         tick: u64,

@@ -45,7 +45,8 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest datagram of UDP. On Windows a datagram longer than the buffer is an error, like a failed socket.
+    /// Largest datagram of UDP. On Windows, receiving a datagram longer than the buffer gives an error, as a failed
+    /// socket does.
     const DATAGRAM_MAX: usize = 1 << 16;
 
     /// A UDP socket.
@@ -133,7 +134,7 @@ mod udp {
                         return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
                     }
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
-                    // The system reports unreachable receivers of earlier packets here.
+                    // The system reports here that a receiver of an earlier packet is unreachable.
                     Err(error)
                         if matches!(
                             error.kind(),

@@ -41,14 +41,14 @@ pub enum Flaw {
         /// Reason given by the game.
         why: String,
     },
-    /// The setup gives a game with another number of players.
+    /// The game that the setup creates has another number of players than the header states.
     PlayersDisagree {
         /// Players in the header.
         header: u32,
         /// Players of the game.
         game: u32,
     },
-    /// The setup gives a game with another tick rate.
+    /// The game that the setup creates has another tick rate than the header states.
     TickRateDisagrees {
         /// Tick rate in the header.
         header: u32,
@@ -79,7 +79,7 @@ pub enum Flaw {
         /// The checkpoint interval.
         interval: u32,
     },
-    /// A block of inputs follows one that is shorter than the interval.
+    /// A block of inputs follows a block with fewer ticks than the checkpoint interval.
     BlockAfterLast,
     /// The bytes of a run are not the canonical encoding of one input for each player.
     Inputs,

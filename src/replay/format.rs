@@ -40,7 +40,7 @@ pub(super) const BLOCK_BYTES_MAX: u32 = 16 << 20;
 /// Maximum recorded setup in bytes.
 pub(super) const SETUP_BYTES_MAX: u32 = 16 << 20;
 
-/// Kinds of blocks. A reader of version 1 refuses others, including 2, which is reserved for saved states.
+/// Kinds of blocks. A reader of version 1 refuses other kinds, including 2, which is reserved for saved states.
 pub(super) mod kind {
     pub(in crate::replay) const INPUTS: u8 = 1;
     pub(in crate::replay) const TRAILER: u8 = 3;
@@ -55,7 +55,8 @@ pub(super) const HASH_BYTES: usize = 16;
 
 /// Hash that a replay stores for a state.
 ///
-/// The hash also covers the inputs so far, because the state hash would miss a changed input that the game ignores.
+/// The hash also covers the inputs so far, because a changed input that the game ignores does not change the state
+/// hash.
 #[must_use]
 pub fn checkpoint_hash(state: StateHash, inputs_digest: StateHash) -> StateHash {
     StateHash::of_digests([state, inputs_digest])

@@ -38,7 +38,7 @@ pub struct Header<'a> {
     pub setup: &'a [u8],
 }
 
-/// Offsets of fields for verdicts.
+/// Offsets of header fields in the file, for verdicts.
 pub(super) mod offset {
     pub(in crate::replay) const PLAYERS: u64 = 20;
     pub(in crate::replay) const TICK_RATE: u64 = 24;
@@ -64,7 +64,8 @@ impl<'a> Header<'a> {
         offset::RULES_NAME + self.rules_name.len() as u64
     }
 
-    /// Encodes the header up to the start checkpoint, which covers these bytes. The caller has checked the lengths.
+    /// Encodes the header up to the start checkpoint. The hash of the start checkpoint covers these bytes. The caller
+    /// has checked the lengths.
     pub(super) fn encode(&self) -> Vec<u8> {
         let Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup } =
             *self;

@@ -5,9 +5,9 @@ use super::reader::ReadError;
 
 /// Bounds on the size and computing time of a replay.
 ///
-/// The default allows a day at 60 Hz, and 20 000 million work units: a day of 150 bodies in contact, some seven hours of
-/// 400 (`docs/VERIFYING.md`), or about five and a half hours of computing for a file made to be slow. A server for one
-/// game should set its own limits.
+/// The default allows a day at 60 Hz, and 20 000 million work units: a day with 150 bodies in contact, or some seven
+/// hours with 400 (`docs/VERIFYING.md`). Verifying a file that is made to be slow takes up to about five and a half
+/// hours. A server for one game should set its own limits.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;

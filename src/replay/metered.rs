@@ -3,7 +3,8 @@ use super::verdict::Verdict;
 use crate::lockstep::Game;
 
 /// Plays a tick by calling `step`, within [`Limits::tick_work`] and [`Limits::total_work`]. `spent` is the work of the
-/// setup and of the earlier ticks, and grows by that of this tick: see [`RawReplay::work`](super::RawReplay::work).
+/// setup and of the earlier ticks (see [`RawReplay::work`](super::RawReplay::work)), to which this call adds the work
+/// of the tick.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -17,7 +18,8 @@ use crate::lockstep::Game;
 /// ```
 ///
 /// # Errors
-/// [`Verdict::LimitExceeded`]. The state is wrong if the work is known only once it is done.
+/// [`Verdict::LimitExceeded`]. If the inputs alone exceed a limit, the tick is not played. If the world exceeds a limit
+/// during the tick, the state of the game is wrong afterwards.
 pub fn play_within<G: Game, T>(
     game: &mut G,
     inputs: &[G::Input],
@@ -34,7 +36,7 @@ pub fn play_within<G: Game, T>(
         world.start_work_meter(room);
     }
     let done = step(game, inputs);
-    // A world with an exhausted work budget has a wrong state: check before any use of it.
+    // A world that has exhausted its work budget has a wrong state, so check the limits before the game is used.
     let metered = game.world_mut().map_or(0, |world| world.stop_work_meter());
     let work = work.saturating_add(metered);
     *spent = before.saturating_add(work);

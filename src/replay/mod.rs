@@ -8,14 +8,14 @@
 //! The file is complete. With these rules and this engine, its setup and its inputs lead to its end state and its
 //! claims.
 //!
-//! The hashes have no key. A match does not prove who played: anyone who can run the game can write a valid replay. To
-//! prove authorship, sign the file. A file with other inputs has other hashes, because each checkpoint covers the state
-//! *and* the inputs so far ([`checkpoint_hash`]).
+//! The hashes have no key. The verdict `Match` does not prove who played: anyone who can run the game can write a valid
+//! replay. To prove authorship, sign the file. A file with other inputs has other hashes, because each checkpoint
+//! covers the state *and* the inputs so far ([`checkpoint_hash`]).
 //!
 //! # Untrusted files
 //!
-//! The [`Limits`] on work and bodies are checked at the start of the game and in every tick, the other limits before
-//! the start. A file is scanned to its end first, so that a damaged file costs no simulation.
+//! The [`Limits`] on work and bodies are checked at the start of the game and in every tick. The other limits are
+//! checked before the start. A file is scanned to its end first, so that a damaged file costs no simulation.
 
 mod bytes;
 mod flaw;

@@ -33,10 +33,10 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
-    /// Number of ticks that have been played within the limits. Their work is not limited again, because the first tick
-    /// after a loaded state costs more.
+    /// Number of ticks that have been played within the limits. When they are played again, their work is not limited,
+    /// because the first tick after a loaded state costs more.
     admitted: u64,
-    /// The verdict that [`RawReplay::step`] has returned.
+    /// The verdict with which [`RawReplay::step`] failed. Further calls return it again.
     failed: Option<Verdict>,
 }
 
@@ -116,8 +116,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies. The verdict is
-    /// final.
+    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies. Further calls
+    /// return the same verdict.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());

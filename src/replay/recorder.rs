@@ -225,7 +225,8 @@ impl<G: Game> Recorder<G> {
         Ok(())
     }
 
-    /// Adds a tick with new inputs, or with those of the tick before, and returns them.
+    /// Adds a tick with `new` inputs, or with the inputs of the tick before if `new` is `None`. Returns the inputs of
+    /// the tick.
     fn extend(&mut self, new: Option<EncodedInputs<G::Input>>) -> Result<&[G::Input], RecordError> {
         if let Some(new) = new {
             let bytes = self.block_length_with(&new);
@@ -250,7 +251,7 @@ impl<G: Game> Recorder<G> {
         self.block_ticks == self.checkpoint_interval
     }
 
-    /// Finishes a full block with the state hash after its last tick. Otherwise does nothing.
+    /// If the block is full, finishes it. `state` is the state hash after its last tick.
     pub fn checkpoint(&mut self, state: StateHash) {
         if self.is_checkpoint_due() {
             self.finish_block(state);
@@ -263,8 +264,8 @@ impl<G: Game> Recorder<G> {
         core::mem::take(&mut self.finished)
     }
 
-    /// Returns the bytes not taken yet, with the current block finished by this state. Together with the bytes taken,
-    /// they are a replay without a trailer. The recorder is unchanged.
+    /// Returns the bytes that have not been taken, with the current block finished by the checkpoint of this state.
+    /// Together with the taken bytes, they are a replay without a trailer. The recorder is unchanged.
     #[must_use]
     pub fn so_far(&self, state: StateHash) -> Vec<u8> {
         let mut copy = self.clone();
@@ -293,7 +294,7 @@ impl<G: Game> Recorder<G> {
         Ok(self.finished)
     }
 
-    /// Upper bound of the payload in bytes with another run of these inputs.
+    /// Upper bound of the block's payload in bytes, if a run of these inputs is added.
     fn block_length_with(&self, added: &EncodedInputs<G::Input>) -> usize {
         let run_length = |encoded: &EncodedInputs<G::Input>| encoded.bytes().len() + 2 * VARINT_BYTES_MAX;
         let previous = self.last_run.as_ref().map_or(0, |(encoded, _)| run_length(encoded));

@@ -55,8 +55,8 @@ impl<'a> Runs<'a> {
     /// The next run, or `None` at the end of the block.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] for bytes that no recorder writes, which a [`Reader`](super::Reader) has already
-    /// refused.
+    /// [`ReadError::Malformed`] for bytes that no recorder writes. A [`Reader`](super::Reader) has already refused such
+    /// bytes.
     pub fn next_run(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         if self.cursor.is_empty() {
             return Ok(None);

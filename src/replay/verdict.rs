@@ -169,7 +169,7 @@ impl Verdict {
         }
     }
 
-    /// Number of ticks played, or 0 if the verdict does not contain it.
+    /// Number of ticks played, or 0 if the verdict does not contain this number.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         match self {

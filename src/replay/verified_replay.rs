@@ -142,7 +142,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     ///
     /// # Errors
     /// The [`Verdict`] if the inputs are not valid for this game, exceed a limit on work or bodies, or lead to another
-    /// state. The verdict is final.
+    /// state. Further calls return the same verdict.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -179,11 +179,11 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         }
         let (tick, inputs) = (self.tick(), &self.raw.position().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
-        // The state at the start of the block agreed.
+        // The state at the start of the block agreed with its checkpoint.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
     }
 
-    /// Whether the state matches the checkpoint of this tick, if there is one.
+    /// Whether the state matches the checkpoint of this tick; true if the tick has no checkpoint.
     pub(super) fn agrees(&self) -> bool {
         self.raw.position().inputs.finished_block().is_none_or(|block| {
             checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint

@@ -70,7 +70,7 @@ pub enum ReportFlaw {
     Players,
     /// The seats are not in ascending order, or one of them does not exist.
     Seats,
-    /// The number of hashes, known or unknown, is not the number of seats.
+    /// The list of hashes does not have one entry, known or unknown, for each seat.
     Hashes,
     /// The ticks of the history are not in ascending order.
     History,
@@ -136,8 +136,8 @@ impl DesyncReport {
         ENVELOPE.seal(self.semantics, &self.body)
     }
 
-    /// Decodes a report of [`DesyncReport::to_bytes`], within the limit `file_bytes`. Its saves and its replay are not
-    /// checked.
+    /// Decodes a report of [`DesyncReport::to_bytes`], within the limit `file_bytes`. Does not check the saves and the
+    /// replay of the report.
     ///
     /// # Errors
     /// [`ReportError`] for other bytes, and for a report longer than the limit.

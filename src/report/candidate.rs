@@ -1,10 +1,10 @@
 //! Finds the body in which a difference originated, among many bodies that differ.
 //!
-//! A body with a wrong velocity affects the bodies that it touches in the same tick, and the largest difference need
-//! not be at the origin. Therefore single bits of the last correct state are flipped, in the speeds and poses of the
-//! bodies that differ. Bits whose value is closest to the observed difference come first. If no body that differs is
-//! known, all bodies are tried, before and after the tick. A flip that leads to exactly the wrong state is the
-//! explanation.
+//! A body with a wrong velocity affects the bodies that it touches in the same tick, so the body with the largest
+//! difference need not be the origin. Therefore the search restores the last correct state, flips a single bit in the
+//! speed or pose of a body that differs, and plays the tick. It starts with the bits whose value is closest to the
+//! observed difference. If no differing body is known, the search tries all bodies, after and before the tick. A flip
+//! that leads to exactly the wrong state is the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -30,9 +30,9 @@ pub(super) struct WrongTick<G: Game> {
     /// Number of ticks up to the last correct state.
     pub(super) tick: u64,
     pub(super) before: G::Save,
-    /// The inputs between that state and the wrong one.
+    /// The inputs of the tick that leads to the wrong state.
     pub(super) inputs: Vec<G::Input>,
-    /// The wrong state, as a hash stated by the diverged side.
+    /// The hash that the diverged side states for the wrong state.
     pub(super) wrong: Said,
     pub(super) phases: Option<TickPhases>,
 }
@@ -73,7 +73,7 @@ fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
 pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
     let (a, b) = both_bits(difference)?;
     let changed = a ^ b;
-    // The sign fills the bits above the width of the number.
+    // A flipped sign bit also changes all bits above the width of the number.
     let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
 }
@@ -101,12 +101,12 @@ pub(super) fn explain<G: Game>(
     let Candidate { body, field, bit, when } = culprit;
     if is_known {
         found.subjects.sort_by_key(|subject| handle(&subject.path) != Some(body));
-        // The states of a report may be equal although their hashes differ.
+        // There may be no subject: the states of a report may be equal although their hashes differ.
         if let Some(first) = found.subjects.first_mut() {
             first.differences.sort_by_key(|difference| difference.field().name() != field.name());
         }
     }
-    // The state before and after the flip.
+    // The difference of the states before and after the flip.
     game.load(&wrong.before);
     if when == When::After {
         game.step(&wrong.inputs);
@@ -146,8 +146,8 @@ impl Candidate {
     }
 }
 
-/// Bits of the speeds and poses of the bodies that differ, closest to the difference first: without a strong collision,
-/// most of the difference stays in the number with the flipped bit.
+/// Bits of the speeds and poses of the bodies that differ. Bits whose value is closest to the observed difference come
+/// first: unless the body collides strongly, most of the difference stays in the number with the flipped bit.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects {
@@ -186,8 +186,9 @@ fn loose_bodies<G: Game>(game: &mut G) -> Vec<BodyId> {
     loose.map(|(id, _)| id).collect()
 }
 
-/// Returns the first candidate that leads to the wrong state, within `work` units. Without candidates, tries the bits
-/// of all bodies, after and before the tick: the step may have restored the body, so that only its contacts differ.
+/// Returns the first candidate that leads to the wrong state, within `work` units. If `candidates` is empty, tries the
+/// bits of all bodies, first after the tick, then before it. The body with the flipped bit need not differ any more:
+/// the step may have restored it, so that only its contacts differ.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,
@@ -207,7 +208,7 @@ fn search<G: Game>(
         .flat_map(|(when, bodies)| bodies.into_iter().flat_map(move |body| Candidate::all_of(body, when)));
     let loading = step_work / 2;
     left = work;
-    // The state that the game has, if no bit of it is flipped.
+    // The state that the game has, before or after the tick; `None` if one of its bits is flipped.
     let mut loaded = None;
     for candidate in candidates.into_iter().chain(of_bodies) {
         let Candidate { body, field, bit, when } = candidate;
@@ -239,7 +240,8 @@ fn search<G: Game>(
     None
 }
 
-/// Plays the tick with at most `left` work units, and subtracts those that it took. Returns whether they were enough.
+/// Plays the tick with at most `left` work units, and subtracts the units that it took. Returns whether `left` was
+/// enough.
 fn play<G: Game>(wrong: &WrongTick<G>, game: &mut G, left: &mut u64) -> bool {
     let limits = Limits { tick_work: *left, total_work: *left, ..Limits::default() };
     let mut spent = 0;
@@ -248,16 +250,16 @@ fn play<G: Game>(wrong: &WrongTick<G>, game: &mut G, left: &mut u64) -> bool {
     played.is_ok()
 }
 
-/// The body of a path.
+/// The body that a path names.
 fn handle(path: &str) -> Option<BodyId> {
     let (_, label) = path.rsplit_once("body ")?;
-    // A name may follow.
+    // A name may follow the handle.
     let handle = label.split(' ').next()?;
     let (slot, generation) = handle.split_once('v')?;
     Some(BodyId::from_parts(slot.parse().ok()?, generation.parse().ok()?))
 }
 
-/// Flips a bit of a body's speed or pose; `None` if `World::flip_bit` refuses it, which changes nothing.
+/// Flips a bit of a body's speed or pose. If `World::flip_bit` refuses the flip, returns `None` and changes nothing.
 fn flip<G: Game>(game: &mut G, body: BodyId, field: BodyField, bit: u32) -> Option<()> {
     game.world_mut()?.flip_bit(body, field, bit).ok()
 }

@@ -24,7 +24,7 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CompareError {
-    /// A snapshot of a world can only be compared with another one.
+    /// A snapshot of a world can only be compared with another snapshot.
     Kinds,
     /// A report comes from other engine semantics, another game, or another version of its rules.
     Unverifiable {
@@ -65,11 +65,12 @@ impl From<InspectError> for CompareError {
 
 /// Finds the first difference between two reports, replays or snapshots, and the side that diverged.
 ///
-/// The running engine simulates the inputs of the longer replay again. Two snapshots are compared without a simulation,
-/// and `G` may be any game.
+/// The running engine simulates the inputs of the longer replay again. Two snapshots are compared without a simulation;
+/// then `G` may be any game.
 ///
 /// # Errors
-/// [`CompareError`] if the files cannot be compared. Parts of the result that cannot be determined give a note.
+/// [`CompareError`] if the files cannot be compared. If a part of the result cannot be determined,
+/// [`Comparison::notes`] gives the reason.
 pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
     if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
         return compare_worlds(a, b);

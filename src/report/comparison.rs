@@ -6,7 +6,7 @@ use super::desync::Group;
 use super::stage::Stage;
 use crate::inspect::Difference;
 
-/// One of two files.
+/// One of the two files of a comparison.
 ///
 /// ```
 /// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}};
@@ -83,7 +83,7 @@ pub enum Blame {
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick before the divergence of this side at which it is known to equal the rerun.
+    /// The last tick at which this side is known to equal the rerun, before it diverges.
     pub equal_until: Option<u64>,
     /// The first tick at which this side is known to differ from the rerun.
     pub diverges: Option<u64>,
@@ -181,13 +181,13 @@ pub struct Explanation {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// The last tick before the first difference, if any, at which the states are known to be equal.
+    /// The last tick at which the states are known to be equal, before the first difference if there is one.
     pub last_equal: Option<u64>,
     /// The first tick at which the states are known to differ.
     pub first_different: Option<u64>,
     /// Differences between the setups. If there are any, [`compare`](super::compare) compares nothing else.
     pub setup: Vec<Difference>,
-    /// The first input that differs. [`compare`](super::compare) compares states up to its tick.
+    /// The first input that differs. [`compare`](super::compare) compares states up to the tick of this input.
     pub input: Option<InputDifference>,
     /// Differences between the claims of two complete replays of the same length. The states may be equal.
     pub claims: Vec<Difference>,

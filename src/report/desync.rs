@@ -24,7 +24,8 @@ pub struct Desync {
     pub known: u64,
     /// The seats of this peer, ascending; empty for a spectator.
     pub seats: Vec<u32>,
-    /// The state hash of the peer of each seat, if received. This peer's own hash is taken from its history.
+    /// For each seat, the state hash of its peer, if received. [`DesyncReport::new`] takes this peer's own hash from
+    /// the history.
     pub hashes: Vec<Option<StateHash>>,
 }
 
@@ -84,7 +85,7 @@ impl DesyncReport {
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
     /// The report has the hash of each known tick in the history, and the saves that fit into [`SAVES_BYTES_MAX`]:
-    /// first those up to the tick that differs, newest first, then the later ones.
+    /// first the saves up to the tick that differs, newest first, then the later saves.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
@@ -181,7 +182,8 @@ impl DesyncReport {
         &self.body.saves
     }
 
-    /// Phase digests of steps, ascending by the tick that the step led to. Only a [`Trace`](super::Trace) has them.
+    /// Phase digests of steps, ascending by the tick that the step led to. Only reports of a [`Trace`](super::Trace)
+    /// have them.
     #[must_use]
     pub fn phases(&self) -> &[(u64, TickPhases)] {
         &self.body.phases

@@ -11,7 +11,7 @@ use crate::hash::StateHash;
 use crate::replay::{self, Limits, Part, ReadError, Reader, checkpoint_hash};
 use crate::world::{SnapshotError, World};
 
-/// A file that can be compared with another one.
+/// A file that can be compared with another file.
 #[derive(Clone, Debug)]
 pub enum Evidence {
     /// The report of a peer on a desync, or of a [`Trace`](super::Trace).
@@ -22,7 +22,7 @@ pub enum Evidence {
     World(Box<World>),
 }
 
-/// Reason why bytes are not evidence.
+/// Reason why bytes cannot be read as [`Evidence`].
 ///
 /// ```
 /// use lockstep2d::{replay::Limits, report::{Evidence, EvidenceError}, world::World};
@@ -65,8 +65,8 @@ impl Evidence {
     /// Reads a file, whose kind follows from its first bytes.
     ///
     /// # Errors
-    /// [`EvidenceError`] for bytes that are not a readable report or snapshot, nor start like a replay. A replay is not
-    /// checked.
+    /// [`EvidenceError`] unless the bytes are a readable report or snapshot, or start like a replay. The rest of a
+    /// replay is not checked.
     pub fn read(bytes: Vec<u8>, limits: &Limits) -> Result<Self, EvidenceError> {
         if bytes.starts_with(&replay::MAGIC) {
             return Ok(Evidence::Replay(bytes));
@@ -87,7 +87,7 @@ impl Evidence {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said {
     hash: StateHash,
-    /// Digest of the inputs that a checkpoint combines with the state hash.
+    /// Digest of the inputs that a checkpoint combines with the state hash; `None` if `hash` is a state hash.
     inputs: Option<StateHash>,
 }
 

@@ -1,5 +1,5 @@
-//! Finds the stage of a tick in which two trajectories diverged, and the differences at the start of the step. This
-//! needs phase digests of the diverged side.
+//! Finds the stage of a tick in which two trajectories diverged, and the differences at the start of the step. The
+//! search needs phase digests of the diverged side.
 
 use alloc::string::String;
 
@@ -38,7 +38,8 @@ fn flipped_bit<G: Game>(
     wrong: &WrongTick<G>,
     differences: &[Difference],
 ) -> Result<Option<Explanation>, InspectError> {
-    // The angular velocity is derived from the stored spin, and bounding boxes from the motion of a body.
+    // The angular velocity is derived from the stored spin, and bounding boxes from the motion of a body, so a flipped
+    // bit changes these fields as well.
     let derived = ["angular_velocity", "fat.lower.x", "fat.lower.y", "fat.upper.x", "fat.upper.y"];
     let stored = |difference: &&Difference| !derived.contains(&difference.field().name());
     let mut stored = differences.iter().filter(stored);
@@ -48,7 +49,7 @@ fn flipped_bit<G: Game>(
     let Some(bit) = candidate::flipped_bit(only) else {
         return Ok(None);
     };
-    // The place of the world in the game's save is unknown here, so ends of paths are compared.
+    // The place of the world in the game's save is unknown here, so only the ends of the paths are compared.
     let place = only.field().subject().unwrap_or(only.field().section());
     let saved = fields(&wrong.before)?;
     let path = saved.iter().filter_map(|field| field.subject()).find(|path| path.ends_with(place));

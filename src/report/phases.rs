@@ -29,7 +29,7 @@ pub struct TickPhases {
     pub digests: Vec<StateHash>,
     /// The world at the start of its last step, as differences to the world's bytes after the previous tick.
     start: Vec<Patch>,
-    /// Length of that world in bytes.
+    /// Length in bytes of the world at the start of its last step.
     start_length: u64,
 }
 
@@ -43,7 +43,7 @@ struct Patch {
 const GAP: usize = 16;
 
 impl TickPhases {
-    /// Plays a tick and records its phases. A game without a world has none.
+    /// Plays a tick and records its phases. A game without a world has no phases.
     pub(super) fn of<G: Game>(game: &mut G, inputs: &[G::Input]) -> Self {
         let Some(world) = game.world_mut() else {
             game.step(inputs);
@@ -67,12 +67,12 @@ impl TickPhases {
         self.start.iter().map(|patch| 16 + patch.bytes.len()).sum()
     }
 
-    /// Length in a report with its tick, in bytes.
+    /// Length of this record in a report, with its tick, in bytes.
     pub(super) fn bytes(&self) -> usize {
         32 + 16 * self.digests.len() + self.start_bytes()
     }
 
-    /// Keeps only the digests, which still show the stage.
+    /// Drops the start of the step. The digests remain and still show the stage.
     pub(super) fn forget_start(&mut self) {
         (self.start, self.start_length) = (Vec::new(), 0);
     }
@@ -102,7 +102,7 @@ impl TickPhases {
         let Some(first) = self.digests.iter().zip(&other.digests).position(|(a, b)| a != b) else {
             return Some(Stage::AfterStep);
         };
-        // A world may be stepped several times in a tick.
+        // A game may step its world several times in a tick. Each step has the same number of digests.
         Some(match Phase::ALL.get((first % (Phase::ALL.len() + 1)).wrapping_sub(1)) {
             Some(phase) => Stage::Phase(*phase),
             None => Stage::BeforeStep,

@@ -1,7 +1,7 @@
 //! Comparison of two replays with different setups or inputs, both simulated by the running engine.
 //!
-//! With equal setups, one game serves both sides while states and inputs are equal. Otherwise both are simulated,
-//! because games of different setups can go on in different ways from equal states.
+//! With equal setups, only the game of A is simulated while the states and inputs of both sides are equal. With
+//! different setups, both games are simulated, because they can continue differently from equal states.
 
 use alloc::format;
 
@@ -65,7 +65,7 @@ impl<G: Game> ReplayComparison<'_, '_, G> {
         self.a.tick().min(self.b.tick())
     }
 
-    /// Plays a tick. With equal setups, it starts from the state of A's game.
+    /// Plays a tick. With equal setups, both sides start from the state of A's game.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;

@@ -20,9 +20,9 @@ pub(super) enum Effort {
     /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
     /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged, [`Beside::suspected`] is `None`, and either the states of both sides are
-    /// available or the diverged side's file has no further save. The rerun and the search together take at most two
-    /// and a half times the work of all ticks.
+    /// Plays until a side has diverged, no difference is suspected ([`Beside::suspected`]), and more ticks would bring
+    /// no more states: the states of both sides are available, or the file of the diverged side has no further save.
+    /// The rerun and the search together take at most two and a half times the work of all ticks.
     Bounded,
 }
 
@@ -49,7 +49,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After the first different input, different states are no divergence.
+    // After the first different input, the states are expected to differ.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -129,8 +129,8 @@ fn compare_saves_alone<G: Game>(
 struct States<S> {
     tick: u64,
     states: [S; 2],
-    /// The side without a hash for this tick, presumed not to have diverged. This is right if the side equals the rerun
-    /// at this tick or later, because a diverged side does not converge again.
+    /// The side that has no hash for this tick and is presumed not to have diverged. The presumption is right if the
+    /// side equals the rerun at this tick or later, because a diverged side does not converge again.
     presumed: Option<Side>,
 }
 
@@ -147,14 +147,14 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
-    /// The first tick at which one side differs from the rerun, and the other side, if the other side has no hash for
-    /// this tick and has not diverged before. The next hash of the other side decides: if it equals the rerun, the
-    /// sides differ at this tick, since a diverged side does not converge again. Otherwise both may have diverged in
-    /// the same way.
+    /// A tick at which the sides may differ, and the side whose next hash decides. One side is the first to differ from
+    /// the rerun; the other side has no hash for this tick and has not diverged before. If the next hash of the other
+    /// side equals the rerun, the sides differ at this tick, because a diverged side does not converge again. Otherwise
+    /// both sides may have diverged in the same way.
     suspected: Option<(u64, Side)>,
     /// The states of both sides at the first different tick for which both are available.
     states: Option<States<G::Save>>,
-    /// As `states`, if the state of one side is presumed.
+    /// Like `states`, but the state of one side is presumed to be the state of the rerun.
     presumed: Option<States<G::Save>>,
     /// Reason why states of an earlier tick could not be used.
     obstacle: Option<String>,
@@ -322,7 +322,7 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // Otherwise the phases already show which bit flipped before the step, or that none did.
+        // Search for a flipped bit, unless the phases show which bit flipped before the step, or that no bit did.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

@@ -76,17 +76,17 @@ impl<G: Game> Trace<G> {
         Ok(())
     }
 
-    /// Creates the report of the last ticks, with a replay from the start. It leaves out saves and starts of steps, the
-    /// oldest first, to fit into the default of [`Limits::file_bytes`] if replay and hashes do.
+    /// Creates the report of the last ticks, with a replay from the start. To fit into the default of
+    /// [`Limits::file_bytes`], it leaves out saves and starts of steps, the oldest first. The replay and the hashes are
+    /// never left out.
     #[must_use]
     pub fn report(&self) -> DesyncReport {
         let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
         self.memory.report(&self.game, self.ticks(), replay)
     }
 
-    /// Simulates the inputs of a replay up to tick `until`, and reports the last `ticks` ticks. Checkpoints are
-    /// ignored. The report leaves out saves and starts of steps, the oldest first, to fit into
-    /// [`Limits::file_bytes`].
+    /// Simulates the inputs of a replay up to tick `until`, and reports the last `ticks` ticks. Checkpoints are not
+    /// compared. To fit into [`Limits::file_bytes`], the report leaves out saves and starts of steps, the oldest first.
     ///
     /// # Errors
     /// [`TraceError`] if the file is malformed or unverifiable, exceeds a limit, or cannot be recorded again, or if the

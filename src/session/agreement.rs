@@ -1,13 +1,15 @@
-//! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are in rows (`row.rs`).
+//! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are fields of the rows, the
+//! status records of peers (`row.rs`).
 //!
-//! A voter promises a ballot higher than all it has promised, and freezes its acknowledgement. With promises of a
-//! quorum the proposer chooses the change: the one that the promisers accepted in the highest ballot, otherwise a new
-//! one (`proposal.rs`). A voter accepts a change if it has promised no higher ballot and holds all inputs before the
-//! cut. A change is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees this
+//! When a voter sees a ballot higher than all that it has promised, it promises this ballot and freezes its
+//! acknowledgement (`progress.rs`). Once a quorum has promised the ballot, its proposer chooses the change
+//! (`proposal.rs`): the change that the promisers accepted in the highest ballot, or a new change if they accepted
+//! none. A voter accepts the change if it has promised no higher ballot and holds all inputs before the cut. The change
+//! is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees these acceptances
 //! installs the change.
 //!
-//! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. Final
-//! ticks lie before it, because a quorum has acknowledged them, and any two quorums have a member in common.
+//! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. All final
+//! ticks lie before the cut, because a quorum has acknowledged them, and any two quorums have a voter in common.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -106,7 +108,7 @@ impl Session {
         }
     }
 
-    /// A random wait, so that competing proposers do not collide again.
+    /// A random wait in microseconds, so that competing proposers do not collide again.
     pub(super) fn backoff(&mut self) -> u64 {
         let ballot = self.config.timing.ballot;
         ballot / 5 + self.random.below(ballot / 2)
@@ -160,7 +162,8 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // The new view may revoke complete ticks that are not final, so these are determined again.
+        // The new view may revoke complete ticks that are not final, so they are counted again from the last final
+        // tick.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;
@@ -192,7 +195,7 @@ impl Session {
         }
     }
 
-    /// Whether rows of a quorum are fresh.
+    /// Whether a quorum of the voters has fresh rows (`Timing::fresh`).
     pub(super) fn is_connected(&self) -> bool {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let set =
@@ -200,7 +203,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Number of voters before this peer whose rows are fresh. Voters of lower rank start ballots earlier.
+    /// Number of voters with fresh rows that come before this peer in the view. Voters of lower rank start ballots
+    /// earlier.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

@@ -7,7 +7,7 @@ pub(super) struct Malformed;
 
 pub(super) type Decoded<T> = Result<T, Malformed>;
 
-/// Reads fields from a slice. A stated length causes no allocation before that many bytes are present.
+/// Reads fields from a slice. Reading a length allocates nothing, so a forged length cannot exhaust the memory.
 pub(super) struct Reader<'a> {
     rest: &'a [u8],
 }

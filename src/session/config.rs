@@ -2,7 +2,7 @@ use core::fmt;
 
 use super::view::SEATS_MAX;
 
-/// One millisecond in microseconds, the unit of the session's times.
+/// One millisecond in microseconds. All times of a session are in microseconds.
 pub(super) const MS: u64 = 1000;
 
 /// Largest number of ticks that may be played with guessed inputs.
@@ -31,18 +31,18 @@ pub struct Timing {
     pub heard: u64,
     /// Time for which a peer's row (its latest status record) counts as fresh.
     pub fresh: u64,
-    /// Time for which a proposer with promises from a quorum waits for the other voters.
+    /// Time for which a proposer with promises from a quorum waits for promises of the other voters.
     pub promises: u64,
-    /// Minimum time between the promise of a ballot and the start of another one. Each round without a decision
-    /// lengthens it.
+    /// Minimum time between the promise of a ballot and the start of another ballot. Each round without a decision
+    /// lengthens this time.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
     /// Maximum time for which a peer that has finished or left still answers; also the maximum time for which a leaving
     /// peer waits for a decision.
     pub linger_max: u64,
-    /// Upper bound of the time counted between two calls, so that a process that was suspended does not take others for
-    /// silent.
+    /// Upper bound of the time that counts as passed between two calls. Without this bound, a process that was
+    /// suspended would take the others for silent.
     pub step_max: u64,
 }
 
@@ -82,24 +82,26 @@ pub struct Config {
     pub input_bytes: u16,
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
-    /// Number of seats that must be taken before the first tick, at most `seats`. That of the tie-holder counts.
+    /// Number of seats that must be taken before the first tick, at most `seats`. The value of the tie-holder counts.
     pub start_with: u8,
     /// Bit for each seat that this peer asks for; 0 for any free seats.
     pub seats_wanted: u64,
-    /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Peers may differ.
+    /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Peers may have
+    /// different values.
     pub guess: u16,
-    /// Smallest delay of inputs in ticks, at most `delay_max`. Peers may differ.
+    /// Smallest delay of inputs in ticks, at most `delay_max`. Peers may have different values.
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// Ticks from the cut of a view change to the first tick of a joining peer, in addition to three round trips. The
-    /// sum is at most half of `history`, or `seat_lead` if that is larger. Unused before the match begins.
+    /// Ticks from the [cut](super::View::cut) of a view change to the first tick of a joining peer, in addition to
+    /// three round trips. The sum is limited to half of `history`, or to `seat_lead` if `seat_lead` is larger. Unused
+    /// before the match begins.
     pub seat_lead: u16,
     /// A peer that lags by at most this many ticks may get a seat.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
-    /// Final ticks whose inputs are kept for peers that reconnect; at least `history`.
+    /// Number of final ticks whose inputs are kept for peers that reconnect; at least `history`.
     pub log_ticks: u32,
     /// Interval in ticks at which states are saved, from 1 to half of `history`.
     pub save_interval: u16,

@@ -1,9 +1,9 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
-//! Additive increase, multiplicative decrease (Chiu and Jain 1989), about once per round trip. A rate was too high if
-//! more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms. Such a rise indicates a
-//! queue, which delays the inputs of the match. Loss of up to an eighth is attributed to the link. Until the rate is
-//! too high for the first time, it grows by half after each period in which it limited the sending.
+//! The rate changes about once per round trip, by additive increase and multiplicative decrease (Chiu and Jain 1989). A
+//! rate was too high if more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms. Such
+//! a rise indicates a queue, which delays the inputs of the match. Loss of up to an eighth is attributed to the link.
+//! Until the rate is too high for the first time, it grows by half after each period in which it limited the sending.
 
 /// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;
@@ -15,10 +15,11 @@ pub(super) const RATE_MAX: u64 = 16_000_000;
 const RATE_STEP: u64 = 100_000;
 /// Rise of the round trip above which a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
-/// Bounds of a period in microseconds.
+/// Bounds of the period between two changes of the rate, in microseconds.
 const PERIOD_MIN: u64 = 40_000;
 const PERIOD_MAX: u64 = 500_000;
-/// Largest burst in microseconds at the current rate. It covers a frame at 60 Hz, the interval of updates in a game.
+/// Largest burst, given as the time in microseconds in which the current rate sends it. It covers a frame at 60 Hz,
+/// because games update the session once per frame.
 pub(super) const BURST: u64 = 25_000;
 /// Minimum number of chunks for an estimate of the loss.
 const CHUNKS_MIN: u32 = 8;
@@ -26,7 +27,7 @@ const CHUNKS_MIN: u32 = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Congestion {
     rate: u64,
-    /// Whether the rate has not been too high yet.
+    /// Set until the rate is too high for the first time.
     is_starting: bool,
     budget: u64,
     budget_at: u64,
@@ -71,7 +72,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Counts a chunk. `again` is whether it was sent before and is assumed lost.
+    /// Counts a sent chunk. `again` states that it was sent before and is assumed lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
 
     /// Sends over a link of `rate` bytes per second, with a queue of 100 ms and a loss of `loss` percent. Returns the
-    /// bytes per second after the first ten seconds.
+    /// bytes per second that arrive after the first ten seconds.
     fn run(rate: u64, loss: u64) -> u64 {
         let (mut control, mut queued, mut arrived, mut random) = (Congestion::new(), 0_u64, 0, 1_u64);
         let mut lost = 0;

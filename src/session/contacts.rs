@@ -1,14 +1,15 @@
-//! [`Contacts`]: other contacts for a peer without a vote.
+//! [`Contacts`]: the peers that a peer without a vote can ask for the match, if its contact falls silent.
 //!
-//! A spectator receives the match through the peer that admitted it. Without recent rows of a majority, the spectator
-//! asks other peers in turn, with the handshake of joining, and continues at its current tick.
+//! A spectator receives the match through its contact, the peer through which it joined. If recent rows of a majority
+//! are missing, the spectator starts the handshake of joining with other peers in turn. It then continues at its
+//! current tick.
 
 use alloc::vec::Vec;
 
 use super::address::Address;
 use super::id::PeerId;
 
-/// Time without fresh rows of a majority after which other peers are asked, in microseconds.
+/// Time in microseconds without fresh rows of a majority, after which this peer asks other peers.
 const SILENCE: u64 = 500_000;
 /// Time after which an unanswered attempt is given up, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
@@ -47,8 +48,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether there are no recent rows of a
-    /// majority. `nonce` returns the number of a new handshake.
+    /// Returns the contact to send a hello to, if one is due. `is_silent` states that recent rows of a majority are
+    /// missing. `nonce` returns the nonce of a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,
@@ -75,8 +76,8 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Returns whether the challenge answers this peer's hello, which confirms the contact's address. A new process at
-    /// that address may be in another match.
+    /// Takes a challenge. Returns whether it answers this peer's hello and comes from the contact itself, which
+    /// confirms the contact's address. Another process at this address may be in another match.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64, sender: PeerId) -> bool {
         let is_answer = |asked: &&mut PendingContact| asked.nonce == nonce && asked.id == sender;
         let Some(asked) = self.asked.as_mut().filter(is_answer) else { return false };
@@ -86,7 +87,7 @@ impl Contacts {
         true
     }
 
-    /// Takes a refusal, so that the next peer is asked.
+    /// Takes a refusal. The next update asks another peer.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

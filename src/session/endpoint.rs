@@ -49,7 +49,7 @@ pub enum JoinEvent {
     Refused {
         /// Reason.
         reason: RefusalReason,
-        /// The contact's offer. A peer joins only with an equal offer.
+        /// The contact's [offer](Identity::offer). A peer can join only with an equal offer.
         offer: Vec<u8>,
     },
     /// The initial state has arrived. The game restores it and then fulfils the requests of the session.
@@ -197,7 +197,7 @@ impl Endpoint {
     /// Opens a match. `seats` has a bit for each seat of this peer; it is 0 for a dedicated server.
     ///
     /// # Errors
-    /// [`ConfigError`] if a parameter is out of its range, or the match does not have a seat.
+    /// [`ConfigError`] if a parameter is out of its range, or the match lacks one of the seats.
     pub fn host(config: Config, identity: Identity, seats: u64) -> Result<Self, ConfigError> {
         validate(&config, &identity)?;
         in_range("bits of the own seats", seats, config.seat_set())?;
@@ -228,17 +228,18 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress;
-    /// the new one has another incarnation, and the same key, role, delay bounds and number of guessed ticks.
+    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress.
+    /// The new session has another incarnation, but the same key, role, delay bounds and number of guessed ticks.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
-        // The contact may be in another match. Otherwise the peers are found again through it.
+        // The contact may be in another match, with other peers. In any case the contact sends the addresses of its
+        // peers.
         (self.routes, self.contacts, self.guests) = Default::default();
-        // Each attempt has another nonce, so that the contact begins anew as well.
+        // Each attempt has another nonce, which tells the contact to begin a new handshake as well.
         self.attempts = self.attempts.wrapping_add(1);
         if let Phase::InMatch(session) = &self.phase {
             (self.role, self.config) = (session.role, session.config.clone());
-            // Others have rows and inputs of the discarded session, which the new session does not continue.
+            // A new incarnation, because others have rows and inputs of the session that is discarded.
             let [a, b, c, d, ..] = self.secret.hash(&self.attempts.to_le_bytes()).to_le_bytes();
             self.me = PeerId(u32::from_le_bytes([a, b, c, d]));
         }
@@ -272,7 +273,7 @@ impl Endpoint {
         }
     }
 
-    /// The address at which a probe or the handshake has shown that a peer receives packets.
+    /// The address of a peer, once a probe or the handshake has shown that the peer receives packets there.
     #[must_use]
     pub fn address(&self, peer: PeerId) -> Option<Address> {
         self.routes.address(peer)
@@ -307,8 +308,8 @@ impl Endpoint {
         self.guests.anybody_waits() && !self.is_closed()
     }
 
-    /// Offers the state after `tick` ticks to the peers that wait for one. The call is ignored unless all these ticks
-    /// are final.
+    /// Offers the state after `tick` ticks to the peers that wait for one. If one of these ticks is not final, the call
+    /// has no effect.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {
@@ -354,7 +355,7 @@ impl Endpoint {
         }
     }
 
-    /// Asks other peers to serve this peer if it has no vote and has lost contact with the majority.
+    /// If this peer has no vote and has lost contact with the majority, asks other peers to send it the match.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let nonce = |address: &Address| token(self.secret, self.me, address).wrapping_add(now);

@@ -17,7 +17,7 @@ impl Endpoint {
     /// Processes a received packet.
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
-        // A joining peer that gets no answer can ask elsewhere.
+        // A closed endpoint does not answer. A joining peer can then ask another contact.
         if self.is_closed() {
             return;
         }
@@ -51,7 +51,7 @@ impl Endpoint {
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
                     if self.contacts.take_challenge(nonce, cookie, sender) {
-                        // Packets go to the contact even before it admits this peer.
+                        // This peer sends packets to the contact even before the contact accepts the handshake.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);
                     }
@@ -110,8 +110,9 @@ impl Endpoint {
         }
     }
 
-    /// Whether to process a packet of another process with this peer's incarnation, so that the joining process learns
-    /// that the incarnation is taken. The answers to a hello contain its secret nonce, so they cannot be forged.
+    /// Whether to process a packet whose sender has the same incarnation as this peer. In a match, this peer answers a
+    /// hello with the same incarnation, so that the joining process learns that the incarnation is taken. A joining
+    /// peer takes such answers. They contain the secret nonce of its hello, so they cannot be forged.
     fn concerns_identity(&self, packet: &JoinPacket) -> bool {
         match packet {
             JoinPacket::Hello { .. } => self.session().is_some(),

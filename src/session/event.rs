@@ -35,7 +35,7 @@ pub enum Status {
     Kicked,
     /// Announces its departure.
     Leaving,
-    /// Has left, and still answers peers that may not know this yet.
+    /// Has left, and still answers peers that may not know about its departure yet.
     Left,
     /// All ticks of the match are final. This peer still answers others.
     Finished {
@@ -98,12 +98,12 @@ pub enum Event {
         /// First tick without the peer in the seat.
         from: Tick,
     },
-    /// Play stalls because inputs of a peer are missing, or because the others may not run further ahead of it.
+    /// Play stalls because inputs of a peer are missing, or because the others may not run further ahead of that peer.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether rows of the peer arrive, directly or through others. If so, the peer is connected, but its game does
-        /// not advance.
+        /// Whether status records of the peer arrive, directly or through others. If so, the peer is connected, but its
+        /// game does not advance.
         heard: bool,
     },
     /// The stall of [`Event::Waiting`] is over.
@@ -139,7 +139,7 @@ pub enum Event {
         /// The tick.
         tick: Tick,
     },
-    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks or 1024 changes of the view behind, so
-    /// that others may have dropped what this peer lacks. This peer has to join again.
+    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks or 1024 changes of the view behind.
+    /// The others may have dropped the inputs or changes that this peer lacks, so this peer has to join again.
     TooFarBehind,
 }

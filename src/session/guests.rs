@@ -1,5 +1,5 @@
-//! [`Guests`]: peers that join through this peer, and uploads to them. A guest is removed when its first row arrives.
-//! Nothing is stored before the handshake has confirmed an address.
+//! [`Guests`]: peers that join through this peer, and the uploads of states to them. A guest is removed when its first
+//! row arrives. Nothing is stored before the handshake has confirmed an address.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,7 +15,7 @@ use super::transfer::{Pinned, Upload};
 
 /// Largest number of joining peers that one contact serves at a time.
 pub const GUESTS_MAX: usize = 64;
-/// Period of the cookies in microseconds. A cookie is valid for one to two periods.
+/// Interval in microseconds at which new cookies replace old ones. A cookie is valid for one to two intervals.
 const COOKIE_LIFE: u64 = 15_000_000;
 /// Time without a request after which a guest is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
@@ -143,7 +143,7 @@ impl Guests {
                 packets.push((guest.id, chunk));
             }
         }
-        // Another guest is first in the next call, so that each gets a share.
+        // The next call begins with another guest, so that each guest gets a share of the rate.
         if !self.list.is_empty() {
             self.list.rotate_left(1);
         }

@@ -8,7 +8,7 @@ pub const NEVER: Tick = u32::MAX;
 
 /// Incarnation of a peer: a random number chosen at the start of each process, unique in its match.
 ///
-/// A restarted process must choose another one, because it does not remember its promises.
+/// A restarted process must choose another number, because it does not remember the promises of the old process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PeerId(pub u32);
 

@@ -70,7 +70,8 @@ impl InputLog {
         log.bytes.get(at(from)?..at(until)?)
     }
 
-    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored and will be sent again.
+    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored, and their sender sends them
+    /// again.
     pub(super) fn add(&mut self, span: usize, start: Tick, inputs: &[u8]) -> Added {
         let size = self.size;
         let Some(log) = self.spans.get_mut(span) else { return Added::Nothing };

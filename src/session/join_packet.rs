@@ -20,7 +20,7 @@ pub(super) const ADDRESS_LIST_MAX: usize = 24;
 pub enum RefusalReason {
     /// The offers differ: another game, setup or version.
     Offer,
-    /// Too many peers join through this contact.
+    /// Too many peers join through this contact, or the contact serves too many peers.
     Full,
     /// The incarnation already has a vote in the match.
     Taken,
@@ -83,7 +83,7 @@ pub(super) enum JoinPacket {
 
 /// Offset of the kind in the body. Match packets have their flags here.
 const KIND_AT: usize = 4;
-/// Smallest kind, above the flags of match packets.
+/// Smallest kind of a join packet. It is larger than any flags of a match packet.
 const KIND_FIRST: u8 = 0x80;
 
 pub(super) fn is_join_packet(body: &[u8]) -> bool {

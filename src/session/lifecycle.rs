@@ -16,7 +16,7 @@ pub(super) struct Lifecycle {
     since: Option<u64>,
     /// Whether this peer lost its vote against its will.
     dropped: bool,
-    /// Whether the tie-holder or a quorum votes to kick this peer, or did so when it lost its vote.
+    /// Whether the tie-holder or a quorum votes to kick this peer, or did so when this peer lost its vote.
     kicked: bool,
     left: bool,
     /// The peer that play waits for, as last reported.
@@ -79,7 +79,7 @@ impl Session {
 
     pub(super) fn update_wants(&mut self) {
         let is_kicked = self.is_voted(|removal| *removal == Removal::Kick(self.key));
-        // The votes in a new view arrive later than the view.
+        // The rows of a new view arrive later than the view, so `kicked` stays set until all rows have arrived.
         let is_unknown = !self.all_voters(|_| true);
         self.lifecycle.kicked = is_kicked || self.lifecycle.kicked && (self.lifecycle.dropped || is_unknown);
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
@@ -163,13 +163,15 @@ impl Session {
         }
     }
 
-    /// Whether a peer without a vote that was not kicked has lost contact with the majority before the end.
+    /// Whether this peer needs another contact: it has no vote, was not kicked, and has lost contact with the majority
+    /// before the end of the match.
     pub(super) fn needs_contact(&self) -> bool {
         let is_over = matches!(self.status(), Status::Left | Status::Finished { .. } | Status::Closed);
         !is_over && !self.lifecycle.kicked && self.view.voter(self.me).is_none() && !self.is_connected()
     }
 
-    /// Whether a peer that has finished or left may stop answering. `known` is whether no other peer needs its answers.
+    /// Whether a peer that has finished or left may stop answering. `known` states that the others need no more
+    /// answers.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);
@@ -203,7 +205,8 @@ impl Session {
         self.events.push_back(Event::Waiting { peer, heard });
     }
 
-    /// After an outage the rows of the others, and with them the lag, arrive when the stall has been reported already.
+    /// Runs in each update, and not only when a stall begins: after an outage, the rows that show the lag arrive later
+    /// than the stall is reported.
     fn tell_too_far_behind(&mut self, waits: bool) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
@@ -216,7 +219,7 @@ impl Session {
         }
     }
 
-    /// A voter that leaves no longer requests a pause.
+    /// Reports requests of voters for a pause, and their withdrawal. A voter that leaves withdraws its request.
     fn tell_pauses(&mut self) {
         let others = self.peers.voters().map(|(_, remote)| remote).filter(|remote| remote.id != self.me);
         let asking = others.filter(|remote| remote.row.as_ref().is_some_and(|row| row.paused));

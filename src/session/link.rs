@@ -1,6 +1,6 @@
-/// Binary logarithm of the unit of times in packets, 128 microseconds.
+/// Binary logarithm of the unit of timestamps in packets, 128 microseconds.
 const UNIT_SHIFT: u32 = 7;
-/// Longest round trip that is accepted, in microseconds. Times in packets wrap after 8.4 s.
+/// Longest round trip that is accepted, in microseconds. Timestamps in packets wrap after 8.4 s.
 const ROUND_TRIP_MAX: u64 = 4_000_000;
 const LOSS_WINDOW: u32 = 64;
 
@@ -49,7 +49,8 @@ pub(super) fn stamp(now: u64) -> u16 {
 }
 
 impl Link {
-    /// The timestamp that the next packet to the peer echoes.
+    /// Echo for the next packet to the peer: the timestamp of the peer's newest packet plus the time since its arrival.
+    /// This time then does not count in the round trip that the peer measures.
     pub(super) fn echo(&self, now: u64) -> Option<u16> {
         let (sent, arrived) = self.last_sent?;
         let held = now.checked_sub(arrived).filter(|&held| held < ROUND_TRIP_MAX)?;

@@ -1,12 +1,14 @@
-//! A match between peers, without sockets, clocks or threads: bytes in, bytes out, time as an argument.
+//! The protocol of a match between peers, without sockets, clocks or threads. The caller passes the time and the
+//! received packets, and sends the returned packets.
 //!
-//! Peers exchange inputs and short status records. A state is sent to a peer that joins. The [`Session`]s of all peers
-//! agree on which peer plays which seat in which ticks, which inputs are final, and at which tick the match ends.
+//! Peers exchange inputs and short status records (rows). A peer that joins receives a state of the game. The
+//! [`Session`]s of all peers agree on which peer plays which seat in which ticks, which inputs are final, and at which
+//! tick the match ends.
 //!
 //! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
 //! - [`Endpoint`]: a session with addresses. It opens or joins a match and sends states to peers that join.
 //! - [`View`]: the seats, players and voters of a match. Views change by agreement of a majority.
-//! - [`Config`]: the parameters of a match and of a peer. Lockstep is a [`Config::guess`] of 0.
+//! - [`Config`]: the parameters of a match and of a peer. A [`Config::guess`] of 0 is lockstep.
 //!
 //! `docs/PROTOCOL.md` has the rules, the packets byte by byte, and the invariants that simulations check.
 

@@ -1,9 +1,9 @@
 //! [`Pace`]: the time of the next tick, and the delay of this peer's inputs.
 //!
 //! The current tick of another player is estimated from its newest row, the row's age and half a round trip. A voter
-//! steers towards the median of these estimates, a peer without a vote towards [`FOLLOW`] ticks behind the final ones.
-//! Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may differ.
-//! A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
+//! steers towards the median of these estimates. A peer without a vote steers towards [`FOLLOW`] ticks behind the final
+//! ticks. Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may
+//! differ. A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
 //!
 //! A voter catches up with the other players, not with the complete ticks. Inputs are issued ahead of play by the input
 //! delay: if all players played every complete tick at once, they would drive each other ahead without end.
@@ -27,8 +27,8 @@ pub(super) struct Pace {
     delay_at: u64,
     /// Whether this peer waits because another one is far behind.
     held: bool,
-    /// Number of ticks that this peer may play at once. For a voter: complete ticks that the median of the other
-    /// players is estimated to have played. For a peer without a vote: final ticks.
+    /// Number of ticks that this peer may play at once. For a voter: complete ticks that it has not played, at most its
+    /// lag behind the median of the other players. For a peer without a vote: final ticks that it has not played.
     behind: Tick,
     /// Whether this peer has just got a vote and plays ticks before they are due until it is level with the others.
     hurries: bool,
@@ -129,8 +129,8 @@ impl Session {
         ahead
     }
 
-    /// The peer that play waits for: one whose input for the first incomplete tick is missing, or, if that peer waits as
-    /// well, the slowest of the players that could play on.
+    /// The peer that play waits for: a peer whose input for the first incomplete tick is missing. If that peer itself
+    /// waits for slower players, the result is the slowest player that could play on.
     #[must_use]
     pub fn waiting_for(&self) -> Option<PeerId> {
         let tick = self.progress.complete;
@@ -176,7 +176,7 @@ impl Session {
 
     fn adapt_delay(&mut self) {
         let now = self.clock.now;
-        // The inputs have to be in time for a peer that is about to play.
+        // Inputs have to arrive in time at a peer that is about to play, so the delay rises at once.
         let played = self.play.played;
         if played == 0 || self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());
@@ -191,8 +191,8 @@ impl Session {
         }
     }
 
-    /// Target of the input delay in ticks, from the slowest link to a player: half a round trip, twice the jitter and
-    /// the interval of packets, less [`Config::guess`].
+    /// Target of the input delay in ticks, from the slowest link to a player: half a round trip plus twice the jitter
+    /// plus the interval of packets, minus [`Config::guess`].
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);

@@ -51,14 +51,14 @@ pub(super) struct Header {
 pub(super) struct Packet {
     pub(super) header: Header,
     pub(super) row: Row,
-    /// Number of the view that the first change leads to, and consecutive changes.
+    /// Consecutive changes of the view, after the number of the view that the first change leads to.
     pub(super) changes: (u32, Vec<Change>),
     pub(super) runs: Vec<Run>,
     pub(super) inputs: Vec<u8>,
     pub(super) foreign: Vec<(PeerId, Row)>,
 }
 
-/// First bytes of a packet: a checksum seeded with the match, so that packets of other matches are dropped.
+/// First bytes of a packet: a checksum seeded with the tag of the match. Packets of other matches have other checksums.
 pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
     let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
     [digest[0], digest[1], digest[2], digest[3]]
@@ -135,7 +135,7 @@ impl Composer {
         count
     }
 
-    /// Appends changes that lead to views `first` and later.
+    /// Appends consecutive changes. The first of them leads to view `first`.
     pub(super) fn changes<'a>(&mut self, first: u32, changes: impl IntoIterator<Item = &'a Change>) {
         let at = self.bytes.len();
         self.bytes.put_var(first);
@@ -147,7 +147,7 @@ impl Composer {
     }
 
     /// Appends input runs: span, first tick, inputs of `size` bytes each. `room` bytes are left free. A run that does
-    /// not fit is shortened. Returns the first tick that was left out of each run; runs beyond the packet are not listed.
+    /// not fit is shortened. Returns the tick after the last input of each run that fits.
     pub(super) fn runs<'a>(
         &mut self,
         size: usize,
@@ -182,7 +182,7 @@ impl Composer {
         ends
     }
 
-    /// Appends rows of other peers. Returns the number of those that fit.
+    /// Appends rows of other peers. Returns the number of rows that fit.
     pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) -> usize {
         let count = self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, RESERVE, rows, |(id, row), bytes| {
             bytes.put_u32(id.0);

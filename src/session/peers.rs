@@ -9,12 +9,13 @@ use super::view::{View, bit};
 
 /// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
 const PEERS_MAX: usize = 192;
-/// Time for which a peer without a vote is served after its last packet, in microseconds.
+/// Time in microseconds for which this peer serves a peer without a vote after the last packet of that peer. To serve a
+/// peer is to send it rows, changes and inputs.
 const SERVED: u64 = 5_000_000;
 /// Longest round trip through other peers that is measured, in microseconds. A longer one is due to an outage.
 const RELAYED_MAX: u64 = 1_000_000;
 
-/// The series of runs of a span that do not fit in one packet.
+/// Position in a series of runs. A series sends the inputs of a span that do not fit in one packet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Resume {
     pub(super) span: u16,
@@ -22,7 +23,8 @@ pub(super) struct Resume {
     pub(super) tick: Tick,
     /// First tick that the peer lacked when the last run was sent.
     pub(super) lacks: Tick,
-    /// Time at which the run that begins with `lacks` was sent, or at which the peer was found to lack it.
+    /// Time at which the run that begins with `lacks` was sent, or at which the peer's row showed that it lacks this
+    /// tick.
     pub(super) since: u64,
 }
 
@@ -35,20 +37,22 @@ pub(super) struct Remote {
     pub(super) fresh: Option<u64>,
     /// Time of the last packet from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Time at which the newest row arrived in which the peer states that it is connected to a quorum. Before such a
+    /// Arrival time of the newest row in which the peer states that it is connected to a quorum. Before the first such
     /// row, the time at which the peer became known.
     pub(super) contact: u64,
-    /// Time at which the caller last asked to serve the peer.
+    /// Time of the last call of [`Session::attach`](super::Session::attach) for the peer.
     pub(super) attached: Option<u64>,
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
     pub(super) resumes: Vec<Resume>,
-    /// The first span and the first foreign row of the next packet to the peer, because the last one had no room.
+    /// The span and the foreign row (row of another peer) with which the next packet to the peer begins, because the
+    /// last packet had no room for them.
     pub(super) next_span: u16,
     pub(super) next_row: Option<PeerId>,
     pub(super) link: Link,
-    /// An own input, by span and tick, and the time at which it was issued, while this peer is not heard. Its round
-    /// trip ends with a relayed row that acknowledges the input.
+    /// Measurement of the round trip through other peers, while no packets arrive from the peer itself: span and tick
+    /// of an own input, and the time at which it was issued. A relayed row that acknowledges the input ends the
+    /// measurement.
     pub(super) probe: Option<(usize, Tick, u64)>,
 }
 
@@ -136,8 +140,8 @@ impl Peers {
         self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
     }
 
-    /// Makes room for a peer, if need be in the place of the peer without a vote that has been silent longest. Returns
-    /// whether there is room, which requires that the removed peer is no longer served.
+    /// Makes room for a peer. If the list is full, this removes the peer without a vote that has been silent longest,
+    /// unless it is still served. Returns whether there is room.
     pub(super) fn has_room(&mut self, id: PeerId, view: &View, now: u64) -> bool {
         self.find(id).is_some() || self.list.len() < PEERS_MAX || {
             let strangers = self.list.iter().enumerate().skip(1);
@@ -150,7 +154,8 @@ impl Peers {
         }
     }
 
-    /// Begins to measure the round trips to peers that are not heard, when an own input is issued.
+    /// Begins to measure the round trips to peers that are not heard. The caller has just issued the input of `span`
+    /// for `tick`.
     pub(super) fn probe(&mut self, span: usize, tick: Tick, heard: u64, now: u64) {
         for remote in self.list.iter_mut().skip(1).filter(|remote| !within(remote.heard, heard, now)) {
             remote.probe.get_or_insert((span, tick, now));

@@ -22,7 +22,7 @@ pub(super) struct Play {
     used_from: Tick,
     /// Ticks for which the game keeps the state before the tick, ascending.
     saves: VecDeque<Tick>,
-    /// First tick whose inputs may differ from those it was played with.
+    /// First tick whose inputs may differ from the inputs that it was played with.
     dirty: Tick,
     pub(super) requests: VecDeque<Request>,
     hashes: VecDeque<(Tick, u128)>,
@@ -103,7 +103,7 @@ impl Session {
         complete.then(|| self.inputs_at(tick, &all))
     }
 
-    /// The inputs of a tick as known now. Missing ones are guessed.
+    /// The inputs of a tick as known now. Missing inputs are guessed.
     fn inputs_at(&self, tick: Tick, spans: &[usize]) -> TickInputs {
         let size = self.log.size();
         let bytes = alloc::vec![0; size * self.play.seats];
@@ -167,11 +167,11 @@ impl Session {
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Call it while
     /// [`is_due`](Session::is_due). Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
-    /// Inputs that were issued count for one tick. When the input delay grows, further calls ask for the inputs of the
-    /// additional ticks before the next tick is played.
+    /// A call issues the inputs of one tick. When the input delay grows, [`is_due`](Session::is_due) remains true:
+    /// further calls issue the inputs of the additional ticks, and then the next tick is played.
     ///
     /// # Errors
-    /// [`InputSize`] unless there is one input for each own seat. Nothing is issued or played.
+    /// [`InputSize`] unless there is one input for each own seat. Then nothing is issued or played.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -221,7 +221,8 @@ impl Session {
         issued
     }
 
-    /// Plays ticks again if their inputs differ from those used, and takes back ticks after the end of the match.
+    /// Plays ticks again if their inputs differ from the inputs used before, and takes back ticks after the end of the
+    /// match.
     pub(super) fn resolve(&mut self) {
         let mut tick = self.play.dirty.max(self.play.used_from);
         self.play.dirty = NEVER;

@@ -1,10 +1,11 @@
 //! Complete, acknowledged and final ticks.
 //!
-//! A tick is *complete* when this peer has all its inputs. A tick in which no peer plays is complete if a peer will
-//! play later, and also if no change of the view can add a player: before the cut, and once the end is decided.
-//! Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete tick is
-//! *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's row in
-//! this view states it as final. A change of the view may revoke complete ticks, but never final ones.
+//! A tick is *complete* when this peer has all its inputs. A tick in which no peer plays is complete if a peer plays in
+//! a later tick, if it lies before the cut, or if the end of the match is decided: then no change of the view can add a
+//! player to it. This peer *acknowledges* complete ticks until it promises a ballot, which freezes the number of
+//! acknowledged ticks. A complete tick is *final* when a quorum of this view acknowledges it, when it lies before the
+//! view's cut, or when a voter's row in this view states it as final. A change of the view may revoke complete ticks,
+//! but never final ones.
 
 use alloc::vec::Vec;
 
@@ -79,7 +80,7 @@ impl Session {
                 }
             }
             if !goes_on {
-                // Joining peers play from the next cut on.
+                // A peer may still join in a tick from the cut on, so these ticks are not complete yet.
                 limit = limit.min(self.view.cut);
             }
             if limit <= tick || limit == NEVER {

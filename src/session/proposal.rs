@@ -62,7 +62,7 @@ impl Session {
     }
 
     /// Whether another voter has been out of contact for `patience`, and either play has stalled for `patience` or that
-    /// voter has no seat. `rank` lengthens `patience`, so that voters do not start ballots together.
+    /// voter has no seat. `rank` lengthens `patience`, so that voters do not start ballots at the same time.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -92,8 +92,8 @@ impl Session {
         voters || removed() || !ends && (self.seat_wants(number).next().is_some() || begins())
     }
 
-    /// Whether the match begins once these seats are taken. The tie-holder decides, because peers may have different
-    /// numbers of seats to start with.
+    /// Whether the match begins once these seats are taken. Only the tie-holder decides this, because peers may have
+    /// different values of `Config::start_with`.
     fn may_begin(&self, tie_holder: PeerId, taken: u64) -> bool {
         tie_holder == self.me && taken.count_ones() >= u32::from(self.config.start_with.max(1))
     }
@@ -126,8 +126,8 @@ impl Session {
         })
     }
 
-    /// Whether the limits of a view admit a voter with these seats, after the voters in `leaves` and those that are
-    /// replaced have left and `joined` others have joined.
+    /// Whether a voter with these seats fits in the limits of a view, after the voters in `leaves` and in `replaced`
+    /// have left and `joined` other voters have joined.
     fn may_add(&self, want: SeatWant, leaves: u64, joined: usize) -> bool {
         let gone = usize::try_from((leaves | self.replaced()).count_ones()).unwrap_or(0);
         self.view.voters.len().saturating_sub(gone) + joined < SEATS_MAX
@@ -163,7 +163,7 @@ impl Session {
         self.is_voted(|removal| [Removal::Without(id), Removal::Kick(key)].contains(removal))
     }
 
-    /// Whether the tie-holder or a quorum votes for such a removal.
+    /// Whether the tie-holder or a quorum votes for a removal that satisfies `is_meant`.
     pub(super) fn is_voted(&self, is_meant: impl Fn(&Removal) -> bool) -> bool {
         let mut set = 0;
         for (index, remote, row) in self.peers.rows(self.view.number) {
@@ -177,8 +177,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Seats for a joining peer among the `free` ones that it requests: first those that its key had, then unused ones,
-    /// then others. `None` if there are too few.
+    /// Chooses seats for a joining peer among the `free` seats that it requests: first seats that its key had before,
+    /// then seats that nobody had, then other seats. `None` if there are too few.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -285,8 +285,8 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that wants to leave or is removed, and for each that has not promised the ballot and has been
-    /// out of contact for `patience`.
+    /// Bit for each voter that wants to leave or is removed by votes. Also for each voter that has not promised the
+    /// ballot and has been out of contact for `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;
         let number = self.view.number;

@@ -20,8 +20,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a packet. Returns its sender; `None` if the session is closed, or if the packet is not of this match
-    /// or not from another known peer.
+    /// Processes a packet. Returns its sender; `None` if the session is closed, the packet is malformed or of another
+    /// match, or its sender is unknown or this peer itself.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -64,7 +64,7 @@ impl Session {
             return;
         }
         if !within(remote.fresh, self.config.timing.heard, active) {
-            // The peer is back.
+            // The peer is heard again, so the vote to continue without it ends.
             self.wants.removals.retain(|removal| *removal != Removal::Without(id));
         }
         remote.fresh = Some(active);

@@ -119,7 +119,7 @@ pub enum Request {
         /// The tick.
         tick: Tick,
     },
-    /// Restore the copy before this tick. Later copies are no longer needed.
+    /// Restore the copy of the state before this tick. Copies for later ticks are no longer needed.
     Load {
         /// The tick.
         tick: Tick,
@@ -131,7 +131,8 @@ pub enum Request {
         /// The inputs.
         inputs: TickInputs,
     },
-    /// Pass the hash of the copy before this tick to [`Session::report_hash`](super::Session::report_hash).
+    /// Pass the hash of the copy of the state before this tick to
+    /// [`Session::report_hash`](super::Session::report_hash).
     Checksum {
         /// The tick.
         tick: Tick,

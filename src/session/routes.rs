@@ -1,6 +1,6 @@
-//! [`Routes`]: the addresses of peers. A received packet is attributed to the incarnation that it states. Match packets
-//! are sent to an address after a probe or the handshake has shown that the peer receives there. Hence a peer may
-//! change its address, but cannot direct match packets to another machine.
+//! [`Routes`]: the addresses of peers. A received packet is attributed to the incarnation that it states. A peer sends
+//! match packets to an address only after a probe or the handshake has shown that the receiver gets packets there.
+//! Hence a peer may change its address, but cannot direct match packets to another machine.
 
 use alloc::vec::Vec;
 
@@ -13,9 +13,9 @@ use super::siphash::Secret;
 const PROBE_INTERVAL: u64 = 250_000;
 /// Maximum number of probes of an address that does not answer.
 const PROBES_MAX: u8 = 40;
-/// Maximum number of addresses of a peer probed at a time.
+/// Maximum number of addresses of a peer that are probed at a time.
 const CANDIDATES_MAX: usize = 4;
-/// An address heard within this time, in microseconds, is not replaced by another one.
+/// After a packet from a peer's address, no other address replaces it for this time, in microseconds.
 const KEPT: u64 = 500_000;
 const ROUTES_MAX: usize = 192;
 
@@ -29,7 +29,7 @@ struct Candidate {
 #[derive(Clone, Debug)]
 struct Route {
     id: PeerId,
-    /// The address at which the peer has been shown to receive packets.
+    /// The address, once the peer has proven that it receives packets there.
     address: Option<Address>,
     heard_at: u64,
     candidates: Vec<Candidate>,
@@ -60,13 +60,14 @@ impl Routes {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
 
-    /// Whether no address of a peer is known, or nothing has arrived from it for [`KEPT`].
+    /// Whether no address of a peer is known, or no packet has arrived from the address for [`KEPT`].
     pub(super) fn is_lost(&self, id: PeerId, now: u64) -> bool {
         let heard = |route: &Route| route.address.is_some() && now < route.heard_at.saturating_add(KEPT);
         !self.list.iter().any(|route| route.id == id && heard(route))
     }
 
-    /// Notes that an address has been proven to belong to a peer.
+    /// Takes an address that is proven to belong to a peer. It replaces the peer's address if no packet has arrived
+    /// from there for [`KEPT`].
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };
         if route.address != Some(address)
@@ -113,8 +114,8 @@ impl Routes {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// Up to `most` known addresses of those peers that matter. If there are more, successive calls return different
-    /// ones.
+    /// Up to `most` known addresses of the peers for which `matters` holds. If there are more, successive calls return
+    /// different addresses.
     pub(super) fn known(&mut self, most: usize, matters: impl Fn(PeerId) -> bool) -> Vec<(PeerId, Address)> {
         let routes = self.list.iter().filter(|route| matters(route.id));
         let known: Vec<_> = routes.filter_map(|route| Some((route.id, route.address?))).collect();

@@ -7,7 +7,8 @@ use alloc::vec::Vec;
 use super::id::{Key, PeerId, Tick};
 use super::view::Change;
 
-/// An attempt to change a view, ordered by round and proposer. A peer makes at most one per round.
+/// An attempt to change the view. Ballots are ordered by round, then by proposer. A peer starts at most one ballot per
+/// round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Ballot {
     pub(super) round: u32,
@@ -54,7 +55,7 @@ pub(super) struct Row {
     /// Number of ticks that the game has played.
     pub(super) played: Tick,
     /// For the first spans that end after `fin`, in order: the index, and the first tick whose input the sender lacks.
-    /// Others send no inputs of spans that are not listed.
+    /// Others send no inputs of spans that are in this view and not in the list.
     pub(super) have: Vec<(u16, Tick)>,
     /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,

@@ -222,7 +222,7 @@ impl Session {
     }
 
     /// Serves a peer without a vote: this peer sends it changes and inputs, for 5 s and as long as packets of that peer
-    /// arrive. A joining peer calls this for the peers that it knows.
+    /// arrive. The caller of a joining peer attaches the peers that it knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         if self.peers.has_room(id, &self.view, active) {
@@ -247,16 +247,17 @@ impl Session {
         self.wants.leave = true;
     }
 
-    /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before that tick; later calls
-    /// have no effect. The request of one peer is enough and cannot be taken back, so make it when the ticks on which
-    /// it depends are [confirmed](Session::confirmed). If several requests are known when a majority decides, the
-    /// largest number counts. After the decision no peer gets a seat, and the end does not change.
+    /// Requests an end of the match after `ticks` ticks. This peer sends the request two seconds before that tick;
+    /// later calls have no effect. The request of one peer is enough and cannot be taken back, so make it when the
+    /// ticks that it depends on are [confirmed](Session::confirmed). If several requests are known when a majority
+    /// decides, the largest number counts. After the decision no peer gets a seat, and the end does not change.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
 
-    /// Requests a pause, or withdraws the request: the others get [`Event::Pause`], and nothing stops. A pause is a time
-    /// in which no game calls [`advance`](Session::advance), while all call [`update`](Session::update).
+    /// Requests a pause, or withdraws the request: the others get [`Event::Pause`] if this peer has a vote, and the
+    /// session stops nothing. A pause is a time in which no game calls [`advance`](Session::advance), while all call
+    /// [`update`](Session::update).
     pub fn pause(&mut self, paused: bool) {
         self.paused = paused;
     }
@@ -270,8 +271,9 @@ impl Session {
     }
 
     /// Votes to remove a peer, which gets no seat while enough votes count. The vote of the
-    /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while this peer is a voter of the view. A peer has
-    /// at most eight votes: a ninth one ends the oldest, and that peer may return.
+    /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while this peer is a voter of the view. A peer
+    /// has at most eight votes: a ninth vote ends the oldest one, and the peer that the oldest vote concerned may
+    /// return.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
@@ -349,13 +351,13 @@ impl Session {
         self.progress.fin
     }
 
-    /// Number of ticks that the game has been asked to play.
+    /// Number of ticks that the session has requested from the game.
     #[must_use]
     pub fn played(&self) -> Tick {
         self.play.played
     }
 
-    /// Number of final ticks that the game has been asked to play with their final inputs.
+    /// Number of final ticks that the session has requested from the game with their final inputs.
     #[must_use]
     pub fn confirmed(&self) -> Tick {
         self.play.confirmed

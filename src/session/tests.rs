@@ -81,7 +81,7 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Flipped bits, prefixes and additional bytes do not panic. Prefixes and additional bytes are refused.
+/// Flipped bits, prefixes and additional bytes cause no panic. The decoder refuses prefixes and additional bytes.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();
@@ -102,7 +102,7 @@ fn no_bytes_panic() {
     assert!(Packet::read(&longer, 2).is_err(), "a byte after the end");
 }
 
-/// The third of three players.
+/// The session of the third of three players.
 fn session() -> Session {
     let mut view = View::opened_by(PeerId(11), Key(1), 1, true);
     view.found(PeerId(21), Key(2), 1, 2);
@@ -144,7 +144,7 @@ fn forged_changes_do_not_fill_the_memory() {
     assert!(session.changes.since(last - kept).is_empty());
 }
 
-/// Others keep the last changes.
+/// Peers keep only the last `CHANGES_KEPT` changes, and cannot send older ones to a peer that lacks them.
 #[test]
 fn a_peer_that_missed_too_many_changes_knows_it() {
     for (missed, is_too_far) in [(0, false), (1, true)] {

@@ -1,5 +1,5 @@
 //! Transfer of states in chunks. The receiver reports which chunks it has and how many may be in flight. The sender
-//! sends missing chunks, again if need be, at a rate set by congestion control.
+//! sends missing chunks, repeatedly if they are lost, at a rate set by congestion control.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,7 +15,7 @@ const WINDOW_MIN: u32 = 56;
 const WINDOW_MAX: u32 = 960;
 /// Time between two requests in microseconds.
 const WANT_INTERVAL: u64 = 20_000;
-/// Received chunks after which a request is sent early.
+/// Number of received chunks after which the next request is sent early.
 const WANT_CHUNKS: u32 = 16;
 /// Round trip that is assumed before one is measured, in microseconds.
 const ROUND_TRIP: u64 = 250_000;
@@ -129,7 +129,8 @@ impl Upload {
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the highest received chunk, not allocated in advance for the announced length.
+    /// The bytes up to the highest received chunk. The buffer grows as chunks arrive, because the announced length may
+    /// be wrong.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,
@@ -160,7 +161,7 @@ impl Download {
         })
     }
 
-    /// Stores a chunk. Wrong lengths, and chunks beyond the largest window, are ignored.
+    /// Stores a chunk. Ignores chunks of a wrong length, and chunks beyond the largest window.
     pub(super) fn take(&mut self, now: u64, index: u32, bytes: &[u8]) {
         let Ok(place) = usize::try_from(index) else { return };
         let Some(have) = self.have.get_mut(place).filter(|have| !**have) else { return };

@@ -1,4 +1,5 @@
-//! Outgoing packets: this peer's row, and the changes, inputs and foreign rows that the receiver lacks.
+//! Outgoing packets: this peer's row, and the changes, inputs and rows of other peers (foreign rows) that the receiver
+//! lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -35,7 +36,7 @@ const INTERVAL_MAX: u64 = 100_000;
 const ROW_ID_BYTES: usize = 4;
 /// Maximum number of packets at a time to a receiver that lacks more than [`HELP_TICKS`] inputs of a span.
 const BURST_MAX: usize = 4;
-/// Largest number of spans in a row, so that it fits in a packet. Further ones follow as the final ticks advance.
+/// Largest number of spans in a row, so that it fits in a packet. Further spans follow as the final ticks advance.
 const SPANS_LISTED: usize = 200;
 /// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
@@ -43,7 +44,7 @@ const HASH_ROWS: u32 = 4;
 /// Inputs of a span for a packet.
 struct Run<'a> {
     span: u16,
-    /// First tick that the receiver lacks, and the tick after the last one.
+    /// First tick whose input the receiver lacks, and the tick after the last input that this peer has.
     lacks: Tick,
     until: Tick,
     start: Tick,
@@ -51,7 +52,8 @@ struct Run<'a> {
 }
 
 impl Session {
-    /// Usual time between packets: a tick, at most [`INTERVAL_MAX`]; doubled above 16 peers, tripled above 32.
+    /// Usual time between packets in microseconds: a tick, at most [`INTERVAL_MAX`]; doubled above 16 peers, tripled
+    /// above 32.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.taking_part() {
             0..=16 => 1,
@@ -187,7 +189,8 @@ impl Session {
         if let Some(row) = foreign.first().and_then(|remote| remote.row.as_ref()) {
             row.write(&mut first_row);
         }
-        // In every second packet, long runs leave room for a row. The first run may fill the packet, so the next packet begins after it.
+        // In every second packet, long runs leave room for a foreign row. A long run may leave no room for further
+        // runs, so the next packet begins with the first run that did not fit.
         let mut runs: Vec<_> = spans.filter_map(|span| self.run_for(to, span)).collect();
         rotate_to(&mut runs, |run| run.span >= to.next_span);
         let keeps_room = self.outbox.version.is_multiple_of(2);
@@ -232,9 +235,10 @@ impl Session {
         }
     }
 
-    /// The oldest inputs of a span that the receiver lacks, or those that follow if the last packet had no room for
-    /// all, unless the oldest ones have been lost. Inputs of another peer are relayed if the receiver does not hear
-    /// that peer or lacks many of its inputs. A peer that downloads a state gets none: it has no row yet.
+    /// The inputs of a span for the next packet. They begin with the oldest input that the receiver lacks. If the last
+    /// packet had no room for all inputs, they continue after it, unless the oldest input is assumed lost. Inputs of
+    /// another peer are relayed only if the receiver does not hear that peer or lacks many of its inputs. A receiver
+    /// that still downloads a state has no row, and gets no inputs.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<Run<'_>> {
         let span = self.view.spans.get(index)?;
         let lacks = self.lacks(receiver, index);
@@ -260,8 +264,8 @@ impl Session {
         Some(Run { span: number, lacks, until, start, inputs })
     }
 
-    /// Rows of voters and of peers that request seats, if the receiver does not hear them. Those that did not fit in
-    /// the last packet are first.
+    /// Rows of voters and of peers that request seats, if the receiver does not hear these peers. Rows that did not fit
+    /// in the last packet come first.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();
@@ -281,8 +285,8 @@ impl Session {
     }
 }
 
-/// The series of runs after a packet, for each span with inputs that did not fit in it. Without them, each packet would
-/// repeat the same inputs until they are acknowledged.
+/// Where the next packet continues, for each span with inputs that did not fit in the last one. Without these
+/// positions, each packet would repeat the same inputs until the receiver acknowledges them.
 fn next_resumes(before: &[Resume], runs: &[Run], ends: &[Tick], now: u64) -> Vec<Resume> {
     let waits = |resume: &&Resume| runs.iter().skip(ends.len()).any(|run| run.span == resume.span);
     let cut = runs.iter().zip(ends).filter(|(run, end)| **end < run.until).map(|(run, &tick)| {
@@ -294,7 +298,7 @@ fn next_resumes(before: &[Resume], runs: &[Run], ends: &[Tick], now: u64) -> Vec
     before.iter().filter(waits).copied().chain(cut).collect()
 }
 
-/// Whether inputs did not fit in a packet whose receiver lacks many of them.
+/// Whether the receiver lacks many inputs of a span, and some of them did not fit in the packet.
 fn is_behind(runs: &[Run], ends: &[Tick]) -> bool {
     runs.iter().enumerate().any(|(index, run)| {
         let is_cut = ends.get(index).is_none_or(|&end| end < run.until);
@@ -302,7 +306,7 @@ fn is_behind(runs: &[Run], ends: &[Tick]) -> bool {
     })
 }
 
-/// Moves the parts of a packet so that a certain one is first, if there is such a part.
+/// Rotates the parts of a packet so that the part selected by `is_first` comes first.
 fn rotate_to<T>(parts: &mut [T], is_first: impl Fn(&T) -> bool) {
     if let Some(place) = parts.iter().position(is_first) {
         parts.rotate_left(place);

@@ -65,8 +65,8 @@ pub(super) struct Join {
 /// A step from one view to the next, proposed or decided.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Change {
-    /// First tick that the change may affect. All final ticks lie before it. Once the change is decided, all ticks
-    /// before it are final.
+    /// First tick that the change may affect. All final ticks lie before the cut. Once the change is decided, all ticks
+    /// before the cut are final.
     pub(super) cut: Tick,
     /// First tick that is not played; `None` while no end is decided.
     pub(super) end: Option<Tick>,
@@ -129,7 +129,7 @@ impl View {
         view
     }
 
-    /// Adds a voter to a view that is not in use yet. The voter gets those of the given seats that are free.
+    /// Adds a voter to a view that is not in use yet. The voter gets those of the given seats that are still free.
     pub fn found(&mut self, id: PeerId, key: Key, weight: u8, seats: u64) {
         self.voters.push(Voter { id, key, weight });
         let seats = seats & self.free_seats();

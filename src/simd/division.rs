@@ -22,7 +22,7 @@ pub(super) fn reciprocal(d: i64) -> i32 {
 pub(super) fn inverse([xx, xy, yy]: [i64; 3]) -> [i32; 3] {
     const ONE: i64 = 1 << 46;
     let (k11, k22) = (ONE + xx, ONE + yy);
-    // The products have 92 fraction bits, of which 30 are kept.
+    // The products have 92 fraction bits. The shift leaves 30.
     let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
     // The determinant is shifted down to 32 bits, so that the products with its reciprocal fit 64 bits.
     let excess = 32u32.saturating_sub((det | 1).leading_zeros());

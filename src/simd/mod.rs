@@ -125,7 +125,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     }
 
     /// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46 fraction bits.
-    /// `K` is the matrix of a point constraint, whose determinant is 1 to 2^27.
+    /// `K` is the matrix of a point constraint. Its determinant is 1 to 2^27.
     #[inline(always)]
     fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
         let [xx, xy, yy] =
@@ -239,7 +239,7 @@ pub enum Backend {
 
 impl Backend {
     /// The backends that are compiled in and that this machine can run, the best one last. Without the feature `std`,
-    /// only backends whose target features are enabled at compile time.
+    /// the list contains only backends whose target features are enabled at compile time.
     pub fn available() -> impl Iterator<Item = Backend> {
         let scalar = Vectors::ARE_OPTIONAL.then_some(Backend::Scalar);
         scalar.into_iter().chain(Vectors::backends())

@@ -11,7 +11,7 @@ use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 /// Number of lanes. With twice as many, each number would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
-/// NEON instructions, which every target for which this file is compiled has.
+/// NEON instructions. This file is compiled only for targets that have them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neon;
 

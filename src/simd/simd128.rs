@@ -8,7 +8,7 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::{Scalar, map};
 use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 
-/// Vector instructions of WebAssembly, which every machine that accepts the program has.
+/// Vector instructions of WebAssembly. Every machine that accepts the module has them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simd128;
 
@@ -182,7 +182,7 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn narrow_saturating<const SHIFT: i32>(a: Products) -> (v128, v128) {
         let a = rounded::<SHIFT>(a);
-        // A number fits if all bits above those kept equal the sign bit of the result.
+        // A number fits if all bits above the 32 bits of the result equal the sign bit of the result.
         let low = shifted::<SHIFT>(a);
         let high = i32x4_shuffle::<1, 3, 5, 7>(a[0], a[1]);
         let out = i32x4_ne(i32x4_shr(high, (SHIFT - 1).unsigned_abs()), sign(low));
@@ -275,7 +275,7 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     a.map(|a| i64x2_add(a, i64x2_splat(1 << (SHIFT - 1))))
 }
 
-/// The 32 bits above the lowest `SHIFT`, which are the same after a logical and an arithmetic shift.
+/// The 32 bits above the lowest `SHIFT` bits. A logical and an arithmetic shift give the same 32 bits.
 #[inline(always)]
 fn shifted<const SHIFT: i32>([a, b]: Products) -> v128 {
     let shift = |a| u64x2_shr(a, SHIFT.unsigned_abs());

@@ -70,7 +70,7 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::narrow_saturating::<31>(wide).0);
             keep(L::low(wide));
         }
-        // Any number to which the rounding constant can be added without overflow.
+        // Numbers of all sizes to which the rounding constant can be added without overflow.
         let wide = L::load_wide(&core::array::from_fn(|i| {
             (i64::from(self.a.0[i]) << 31).saturating_add(i64::from(self.b.0[i])).saturating_mul(2) / 2
         }));
@@ -84,7 +84,7 @@ impl Kernel<WIDTH> for Operations<'_> {
         keep(L::narrow_by(L::mul(a, b), L::load(&shifts)));
         let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
         L::quads(&quads, &first([3, 0, 2, 2, 1, 7, 6, 5])).into_iter().for_each(&mut keep);
-        // The result fits 32 bits.
+        // `narrow` requires a result that fits 32 bits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
     }
 }

@@ -40,8 +40,9 @@ impl BodyFacts {
     }
 }
 
-/// Lever ratio `e = c / k` of an arm along a direction, clamped to [`RATIO_MAX`]. The direction has the fraction bits
-/// of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the conversion from a length to a lever ratio.
+/// Lever ratio `e = c / k` with `c = r x n`, for an arm `r` and a direction `n`, clamped to [`RATIO_MAX`]. The
+/// direction has the fraction bits of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the conversion from a
+/// length to a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
     // `c` is below 2^31.5, so its product with a mantissa is below 2^63.
@@ -94,7 +95,8 @@ impl BodyList {
         self.indices[slot as usize]
     }
 
-    /// The index of a body with a joint. Adds the body if it is not in this list, because joints need its rotation.
+    /// The index of a body with a joint. Adds the body if it is not in this list, because joints need the rotation of
+    /// the body.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
             self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);

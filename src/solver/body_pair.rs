@@ -70,7 +70,7 @@ impl Remainder {
         let mix = |seed: i64| seed.wrapping_mul(MULTIPLIER);
         let seed = mix(mix(centre.x.to_bits()).wrapping_add(centre.y.to_bits()));
         let seed = mix(seed.rotate_left(32).wrapping_add(body.angle().to_bits().into()));
-        // The highest bits are the most random ones. The 30 bits that are kept span one unit of a speed.
+        // The highest bits are the most random ones. The shift leaves 30 bits, which span one unit of a speed.
         let next = |round: i64| saturate(mix(seed.wrapping_add(round).rotate_left(32)) >> 34);
         Remainder { x: next(1), y: next(2), spin: next(3) }
     }

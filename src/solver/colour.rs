@@ -102,8 +102,8 @@ impl<'a> Group<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
     nodes: Vec<Node>,
-    /// The constraints for which `order` was computed. In a world at rest the constraints seldom change, and the order
-    /// is kept.
+    /// The constraints for which `order` was computed. In a world at rest the constraints seldom change, and `order` is
+    /// reused.
     ordered: Vec<Node>,
     /// For each body, a bit set of the colours of its constraints.
     used: Vec<u32>,
@@ -155,7 +155,7 @@ impl Colouring {
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
-            // Nothing changes the ground, so that constraints with it may have the same colour.
+            // Constraints never change the ground. Two constraints with the ground may therefore have the same colour.
             used[GROUND as usize] = 0;
             let place = place_of(colour, size);
             *colour_count = (*colour_count).max(place.div_ceil(2));
@@ -206,7 +206,7 @@ impl Colouring {
         rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
     }
 
-    /// Index in `order` after the last constraint that has this place and belongs to the thread `part`.
+    /// Index in `order` one past the last constraint that has this place and belongs to the thread `part`.
     fn end(&self, place: u8, part: usize) -> usize {
         self.ends.get(self.ranks.rank_of(place, part)).map_or(0, |&end| end as usize)
     }

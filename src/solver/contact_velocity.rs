@@ -27,7 +27,7 @@ use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, Velocity
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
-    /// Whether the tick has had a sub-step to measure.
+    /// Whether the tick has had a sub-step before, so that its velocity changes can be measured.
     known: bool,
     /// Whether any group of any thread is shared ([`PushedBody::shared`]).
     pub(super) shared: bool,
@@ -41,8 +41,8 @@ struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
     /// Whether one of the bodies is shared ([`PushedBody::shared`]). [`Task::Suspend`] and [`Task::Resume`] then also
-    /// act on the other bodies, whose `free` stays exact: `free - v + v` does not round or saturate, because `free` and
-    /// `v` are below 512 m/s.
+    /// act on the other bodies of the group, whose `free` stays exact: `free - v + v` does not round or saturate,
+    /// because `free` and `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     change: VelocityW<Ints<N>>,
@@ -83,7 +83,7 @@ impl ContactVelocities {
     }
 
     /// Records the free velocities and applies the velocity changes of the last sub-step. Returns `false` in the first
-    /// sub-step of a tick, in which there are no such changes yet.
+    /// sub-step of a tick, when there are no changes to apply.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
         self.perform(Task::Apply, context);
         core::mem::replace(&mut self.known, true)

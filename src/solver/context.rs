@@ -42,7 +42,7 @@ impl SolverPass for Relax {
     }
 }
 
-/// The settings of a tick, the thread that works on it, and its bodies.
+/// The settings and the bodies of a tick, and the thread that works on the tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepContext<'a> {
     pub(super) machine: Machine,

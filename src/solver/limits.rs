@@ -1,5 +1,6 @@
 //! Limits of velocities and impulses. A velocity within its limit plus a change of up to [`STEP_MAX`] fits the 32-bit
-//! format. Impulses of joints in blocks (`joint/block`) are not clamped within a tick: their velocity changes saturate.
+//! format. Impulses of joints in blocks (`joint/block`) are not clamped within a tick. The velocity changes that they
+//! cause saturate instead.
 
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::{Fx, Speed, Vec2, round_shift, saturate, saturate_wide};
@@ -8,18 +9,19 @@ use crate::math::{Fx, Speed, Vec2, round_shift, saturate, saturate_wide};
 pub(crate) type Faults = u64;
 
 /// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. A larger impulse of
-/// a point block is shortened, or clamped in a hinge.
+/// a point block is shortened. In a hinge, each of its components is clamped.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// A velocity in units of [`Speed`], beyond its range if need be.
+/// A velocity in units of [`Speed`]. The result may exceed the range of [`Speed`].
 #[inline]
 pub(crate) fn units(velocity: Fx) -> i64 {
     round_shift(velocity.to_bits(), Fx::FRAC_NBITS - Speed::FRAC_NBITS)
 }
 
-/// Shortens a vector in units of [`Speed`] so that both components are within `most`, which is a fault.
+/// Shortens a vector in units of [`Speed`] so that both components are within `most`. Each shortening counts as a
+/// fault.
 #[inline]
 pub(crate) fn shortened(vector: [i64; 2], most: Speed, faults: &mut Faults) -> Vec2<Speed> {
     let largest = vector[0].unsigned_abs().max(vector[1].unsigned_abs());

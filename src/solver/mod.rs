@@ -91,7 +91,7 @@ impl Solver {
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
         self.moving.clear();
-        // Bodies are large, so each is read only once.
+        // Bodies are large, so one loop reads each body for both lists.
         for &slot in slots {
             let body = bodies.at(slot);
             self.list.add(slot, body);
@@ -171,7 +171,7 @@ impl Solver {
         self.contact_velocities.iter_mut().for_each(|velocities| velocities.shared = is_shared);
     }
 
-    /// The colour of a touching pair's contact in the last tick.
+    /// The colour that the contact of a touching pair had in the last tick.
     pub(crate) fn contact_colour(&self, pair: usize) -> Option<SolverColour> {
         self.colouring.colour_of(pair)
     }

@@ -22,8 +22,8 @@
 //! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`:
 //! `(impulseScale I + massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit
 //! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. A spring that
-//! yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms:
-//! it has no potential, and feeds energy into bodies that turn.
+//! yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms.
+//! Such a spring has no potential, and feeds energy into bodies that turn.
 //!
 //! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
 //! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
@@ -38,9 +38,9 @@
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! The impulse still acts along the arm at the start of the sub-step, so that it dissipates no energy (the position
-//! constraint of RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal
-//! force. The relax pass measures with the arm at the new pose. Hinges solve these equations in batches
+//! The impulse still acts along the arm at the start of the sub-step, and therefore dissipates no energy (the position
+//! constraint of RATTLE, H. Andersen 1983). `M` compensates for the softness, because a soft joint yields to the
+//! centrifugal force. The relax pass measures with the arm at the new pose. Hinges solve these equations in batches
 //! (`joint/hinge`). Springs and motors between points (`joint/point`) measure with the arm at the current pose.
 
 #[cfg(test)]
@@ -230,7 +230,7 @@ impl PointBlock {
         [softness.wanted(vr.x, bias.x, p_x) - push[0], softness.wanted(vr.y, bias.y, p_y) - push[1]]
     }
 
-    /// Shortens `L` so that `|G L| <= p_max`. [`Speed::MAX`] is unlimited.
+    /// Shortens `L` so that `|G L| <= p_max`. A `p_max` of [`Speed::MAX`] means no limit.
     fn within(&self, lambda: [i64; 2], p_max: Speed) -> [i64; 2] {
         if p_max == Speed::MAX {
             return lambda;

@@ -71,7 +71,8 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits, at most 2^14. Rounding `a e` first would multiply its error by up to 2^7.
+/// `a e e'` with 30 fraction bits, at most 2^14. If `a e` were rounded first, `e'` would multiply the rounding error by
+/// up to 2^7.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());
@@ -255,7 +256,8 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s, which occurs when a bound shrinks or a body under load comes free.
+    /// Applies an impulse of more than 512 m/s. Such impulses occur when a bound shrinks or a body under load comes
+    /// free.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, bodies: &mut BodyPair<'_>) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -316,7 +318,7 @@ mod tests {
         MassFractions { a, b: Unit::ONE - a }
     }
 
-    /// One update leaves at most 5 units of [`Speed`], 2.4e-6 m/s.
+    /// One update leaves a relative velocity of at most 5 units of [`Speed`], 2.4e-6 m/s.
     #[test]
     fn an_update_removes_the_relative_velocity() {
         let mut rng = Rng::new(4);

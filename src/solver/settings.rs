@@ -82,9 +82,9 @@ pub struct SolverSettings {
     /// Approach speed in m/s, 0 to 400, below which shapes do not bounce, unless
     /// [`Material::restitution_threshold`](crate::body::Material::restitution_threshold) is set.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, 1 to 400, of dynamic bodies and of velocities that are set, also of the radius of gyration
-    /// times the angular velocity. At fewer than 27 ticks per second the limit is lower, so that a body moves at most
-    /// [`DISTANCE_MAX`] in a tick.
+    /// Speed limit in m/s, 1 to 400, for dynamic bodies and for velocities that a caller sets. The limit also holds for
+    /// the radius of gyration times the angular velocity. At fewer than 27 ticks per second the limit is lower, so that
+    /// a body moves at most [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 

@@ -71,7 +71,8 @@ impl Softness {
     }
 
     /// The negated part of a spring's impulse that comes from its stretch: `massScale biasRate x`, about `h omega^2 x`.
-    /// The product is rounded to a [`Speed`] at the end, because the bias rate times a long stretch does not fit one.
+    /// The product is rounded to a [`Speed`] at the end, because the bias rate times a long stretch does not fit a
+    /// [`Speed`].
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(self.push_wide(stretch))
     }

@@ -1,7 +1,8 @@
 //! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //!
 //! All threads of a tick run the same stage at a time, each on its own bodies and constraints. A barrier
-//! ([`StepContext::wait`]) precedes a stage that reads bodies of other threads, and ends a stage over constraints.
+//! ([`StepContext::wait`]) precedes every stage that reads bodies of other threads, and follows every stage over
+//! constraints.
 
 use super::COLD_ROUNDS;
 use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
@@ -19,8 +20,8 @@ pub(super) struct SolverShare<'a, 'set> {
 }
 
 impl SolverShare<'_, '_> {
-    /// Performs one sub-step. `index` counts the sub-steps of all ticks. `is_first` tells whether it is the first one
-    /// of the tick.
+    /// Performs one sub-step. `index` counts the sub-steps of all ticks. `is_first` tells whether this is the first
+    /// sub-step of the tick.
     pub(super) fn sub_step(&mut self, index: u64, is_first: bool, context: &StepContext<'_>) {
         let SolverShare { moving, contacts, velocities, joints } = self;
         let tuning = context.tuning;

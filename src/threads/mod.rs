@@ -124,7 +124,7 @@ pub(crate) fn part_of(len: usize, unit: usize, member: usize, count: usize) -> R
     end(member)..end(member + 1)
 }
 
-/// Divides a slice at the given ends. Ends beyond the slice count as its end.
+/// Divides a slice at the given ends. An end beyond the slice counts as the end of the slice.
 pub(crate) fn split_at_ends<T>(
     slice: &mut [T],
     ends: impl Iterator<Item = usize>,

@@ -1,9 +1,9 @@
 //! Decides which ticks the threads of a team share, by the times of earlier ticks.
 //!
-//! The threads wait for each other about a hundred times in a tick. If other programs use the processors, a wait lasts
-//! as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one thread.
-//! Small worlds may be slower with several threads even on idle processors. Times never influence a result, because no
-//! result depends on the number of threads.
+//! The threads wait for each other about a hundred times in a tick. If other programs use the processors, a wait may
+//! last a time slice of the operating system, and a tick takes up to thirty times as long as with one thread. Small
+//! worlds may be slower with several threads even on idle processors. Times never influence a result, because no result
+//! depends on the number of threads.
 
 use core::time::Duration;
 
@@ -19,12 +19,12 @@ pub(super) enum Mode {
     Team,
 }
 
-/// Compares the times of ticks in both modes. Most ticks use the faster mode, and trial ticks the other one. Trials
-/// become rare if they keep being slower, because each may take long.
+/// Compares the times of ticks in both modes. Most ticks use the faster mode, and a few trial ticks use the other mode.
+/// Trials become rare while the other mode stays slower, because a slow trial delays the game.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean for the faster mode, and the time
-    /// of the last trial for the other one. `None` before the first tick in the mode.
+    /// of the last trial for the other mode. `None` before the first tick in the mode.
     costs: [Option<u64>; 2],
     faster: Mode,
     until_trial: u32,

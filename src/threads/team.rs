@@ -12,8 +12,8 @@ use super::{Member, Sharing};
 /// Number of polls after which a thread without work yields.
 const LOOKS: u32 = 1000;
 
-/// Number of spins after a stage, while the other threads return from its last barrier. Otherwise the calling thread
-/// would go to sleep, and waking it takes 50 microseconds.
+/// Number of spins after a stage, while the other threads return from its last barrier. Without these spins, the
+/// calling thread would go to sleep, and waking it takes 50 microseconds.
 const RETURN_SPINS: u32 = 100;
 
 #[derive(Debug)]
@@ -21,12 +21,12 @@ pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
     /// Held during a tick, because worlds that are clones of each other share a team. If two worlds used the team at
-    /// once, each could wait for a thread that waits at the barrier of the other world. Contains `None` for
+    /// once, each could wait for a thread that waits at the barrier of the other world. The mutex contains `None` for
     /// [`Sharing::Always`].
     turn: Mutex<Option<Pace>>,
 }
 
-/// Ends the tick for the other threads, also if the calling one panics.
+/// Ends the tick for the other threads, even if the calling thread panics.
 struct TickEnd<'a>(&'a AtomicBool);
 
 impl Drop for TickEnd<'_> {

@@ -13,7 +13,7 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 ///
 /// Soft contacts are springs that yield in proportion to `g / hertz^2`, whatever the size of the bodies. With the
 /// default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one of 10 cm. The
-/// stiffness in Hz is at most an eighth of the sub-step rate. With 60 ticks per second and 10 m/s²,
+/// stiffness in Hz is at most an eighth of the sub-step rate. With 60 ticks per second and gravity of 10 m/s²,
 /// [`Config::for_smallest`] gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
@@ -25,7 +25,7 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// | 1 cm | 37 | 277.5 Hz | 1 mm | 2.4 % |
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
-/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the settings of boxes of 1 m under 10
+/// Only gravity divided by size matters: boxes of 10 cm under 1 m/s² need the same settings as boxes of 1 m under 10
 /// m/s². A dynamic body with mass needs a radius of gyration of at least 2 mm and a mass of at least 10 mg. Small
 /// bodies may also need a lower [`SolverSettings::restitution_threshold`] and
 /// [`sleep_speed`](crate::body::BodySettings::sleep_speed).
@@ -65,9 +65,9 @@ pub struct Config {
     /// Largest number of joints, at most 2^20.
     pub joint_limit: u32,
     /// Largest number of pairs of shapes in a tick, at most 2^20: see
-    /// [`World::pair_count`](crate::world::World::pair_count). If there are more, the pairs in the largest slots are
-    /// left out, and the tick counts as a fault. The limit bounds time and memory of a tick for untrusted worlds. It
-    /// does not limit pairs of sleeping bodies.
+    /// [`World::pair_count`](crate::world::World::pair_count). If there are more, the tick leaves out the pairs of the
+    /// shapes in the largest slots, and counts one fault. The limit bounds the time and memory of a tick for untrusted
+    /// worlds. It does not limit pairs of sleeping bodies.
     pub pair_limit: u32,
 }
 
@@ -115,11 +115,12 @@ impl Config {
 
     /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
     /// sink by less than 2.5 % of a box; see [`Config`]. Also reduces the speculative distance to a fiftieth of `size`,
-    /// but not below 1 mm. Sufficient settings stay as they are. Set gravity and the tick rate before the call.
+    /// but not below 1 mm. Settings that already suffice stay as they are. Set gravity and the tick rate before the
+    /// call.
     ///
-    /// The needed number of sub-steps per second is `sqrt(4800 g / size)`. At most 64 per tick and 4000 per second are
-    /// set, which is enough for boxes of 5 mm at 60 ticks per second and 10 m/s². Only [soft](ContactTuning::Soft)
-    /// contacts get another stiffness.
+    /// The needed number of sub-steps per second is `sqrt(4800 g / size)`. The result has at most 64 sub-steps per tick
+    /// and 4000 per second, enough for boxes of 5 mm at 60 ticks per second and 10 m/s². The stiffness changes only for
+    /// [soft](ContactTuning::Soft) contacts.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};

@@ -6,7 +6,7 @@ use crate::body::{
 use crate::collision::PosedShape;
 use crate::math::{Aabb, Fx};
 
-/// Number of low bits of an [`Fx`] that are 0 in the corners of fat boxes, whose grid is 2^-22 m.
+/// Number of low bits of an [`Fx`] that are 0 in the corners of fat boxes: the corners are multiples of 2^-22 m.
 pub(crate) const FAT_GRID_SHIFT: u32 = 10;
 
 /// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that move, this distance is a
@@ -31,7 +31,7 @@ pub(crate) fn mass_of<'a>(
     let mass = match kind {
         BodyKind::Dynamic => MassProperties::dynamic(source, shapes)?,
         BodyKind::Fixed | BodyKind::Kinematic => {
-            // A given mass has to be valid before the body becomes dynamic.
+            // Checks a given mass already now, because the body may become dynamic later.
             if matches!(source, MassSource::Given { .. }) {
                 MassProperties::dynamic(source, shapes)?;
             }
@@ -41,7 +41,7 @@ pub(crate) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-/// The fat box of a shape after an edit. On fixed bodies, which no tick moves, it has no margin.
+/// The fat box of a shape after an edit. On fixed bodies, which ticks do not move, the box has no margin.
 pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
     match body.kind() {

@@ -97,9 +97,9 @@ impl HitEvent {
 /// A sensor that began or ceased to overlap a shape.
 ///
 /// Overlaps are measured at the end of the tick. A shape that crosses a sensor within a tick has both events in that
-/// tick, with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. Bodies are taken to
-/// move straight and to rotate evenly within a tick. A shape that leaves a sensor and returns within the tick has no
-/// events.
+/// tick, with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. The events assume
+/// that bodies move straight and rotate evenly within a tick. A shape that leaves a sensor and returns within the tick
+/// has no events.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};

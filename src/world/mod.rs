@@ -57,7 +57,7 @@ use state::State;
 
 /// A physics world.
 ///
-/// [`World::state_hash`], [`World::save`] and [`World::to_bytes`] cover everything that influences the future. The same
+/// [`World::state_hash`], [`World::save`] and [`World::to_bytes`] cover all state that influences later ticks. The same
 /// edits in the same order give the same hash after every tick on every machine.
 ///
 /// ```
@@ -203,9 +203,9 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes with overlapping fat boxes. The shapes may collide, or one is a sensor that detects
-    /// the other. At least one of the two bodies is dynamic and awake, or kinematic and not yet at rest for a whole
-    /// tick. The next tick adds the pairs of new and moved shapes.
+    /// Number of pairs of shapes with overlapping fat boxes. Counts only pairs that may collide, or of which one shape
+    /// is a sensor that detects the other. At least one of the two bodies must be dynamic and awake, or kinematic and
+    /// not yet at rest for a whole tick. The next tick adds the pairs of new and moved shapes.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -228,8 +228,8 @@ impl World {
         &mut self.state.rng
     }
 
-    /// Returns the inner boxes of the broad phase, each with its depth in the tree, for tools. Empty unless the broad
-    /// phase is a [`BroadPhaseKind::Tree`].
+    /// Returns the boxes of the inner nodes of the broad phase's trees, each with its depth, for tools. Empty if the
+    /// broad phase is not a [`BroadPhaseKind::Tree`].
     #[must_use]
     pub fn broad_phase_boxes(&self) -> Vec<(Aabb, u32)> {
         self.scratch.shapes.broad_phase().inner_boxes()
@@ -255,9 +255,10 @@ impl World {
     /// Sets the largest number of threads that share a tick; 0 counts as 1. Does not change any hash. Returns whether
     /// the threads could be created; if not, nothing changes. Needs the feature `parallel`.
     ///
-    /// The world compares the times of ticks with all threads and with the calling thread alone, and prefers the faster
-    /// way. Threads keep their processors busy during a tick. A tick uses the calling thread alone if the previous tick
-    /// simulated fewer than 256 bodies, or if a clone of the world is using the shared threads.
+    /// The world measures ticks with all threads and ticks with the calling thread alone, and mostly uses the faster of
+    /// the two. During a tick, waiting threads spin instead of sleeping, so that each keeps a processor busy. A tick
+    /// uses the calling thread alone if the previous tick simulated fewer than 256 bodies, or if a clone of the world
+    /// is using the shared threads.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)
@@ -283,7 +284,7 @@ impl World {
     }
 
     /// Sets the instruction set that the solver uses. Does not change any hash. Returns false and changes nothing if
-    /// it is not in [`Backend::available`].
+    /// `backend` is not in [`Backend::available`].
     #[doc(alias = "SIMD")]
     pub fn set_backend(&mut self, backend: Backend) -> bool {
         let machine = Machine::new(backend);

@@ -34,8 +34,8 @@ pub(crate) enum Side {
     Both,
 }
 
-/// Everything that influences the future, and the names and numbers that games store. Snapshots and hashes take it
-/// apart field by field, so that a new field does not compile until they contain it.
+/// All state that influences later ticks, and the names and numbers that games store. The code of snapshots and hashes
+/// destructures `State` without `..`, so that a new field causes compile errors until both contain the field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
@@ -87,7 +87,7 @@ impl State {
         (self.body_of(a), self.body_of(b))
     }
 
-    /// Drops the manifolds of a body whose shapes or centre of mass change.
+    /// Drops the kept manifolds of a body's contacts, because its shapes, its pose or its centre of mass change.
     pub(crate) fn end_manifolds(&mut self, body: u32) {
         let shapes = &self.shapes;
         let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
@@ -96,7 +96,8 @@ impl State {
             contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.end());
         };
         end(&mut self.contacts);
-        // The contacts of a body just woken are still in this list. Mutable access drops its packed form.
+        // Contacts of bodies that were woken since the last tick are still in this list. Searches before mutable
+        // access, because that access drops the packed form of the list.
         if self.sleeping_contacts.iter().any(has_own) {
             end(&mut self.sleeping_contacts);
         }
@@ -143,12 +144,12 @@ impl State {
         a.acts_on(b) || b.acts_on(a)
     }
 
-    /// Whether a contact of two shapes, or an area, may hold their bodies.
+    /// Whether a pair may exert forces on its bodies: both shapes are solid, or one is an area that acts on the other.
     pub(crate) fn supports(&self, pair: Pair) -> bool {
         self.sensor_of(pair).is_none() || self.has_area(pair)
     }
 
-    /// The pair for the events; `None` if it has neither a sensor nor a shape with contact events.
+    /// The pair as events report it; `None` if the pair has neither a sensor nor a shape with contact events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;
         let sensor = self.sensor_of(contact.shapes);

@@ -68,7 +68,7 @@ pub struct StepStats {
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
-    /// Number of contact points that continue a point of the previous tick with its impulse.
+    /// Number of contact points that existed in the previous tick and start with the impulse of that tick (warm start).
     pub points_kept: u32,
     /// Number of contact points that had an impulse in the previous tick and are gone, although their shapes still
     /// touch.

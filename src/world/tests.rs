@@ -69,7 +69,7 @@ impl Near {
         Near { shapes: posed.collect(), pairs }
     }
 
-    /// Number of contact points with the box reject and cached separating axes.
+    /// Number of contact points found with the AABB test and with cached separating axes.
     #[inline(never)]
     fn with_reject_and_axis(
         &self,
@@ -85,7 +85,7 @@ impl Near {
         points.sum()
     }
 
-    /// Number of contact points without the box reject and without cached axes.
+    /// Number of contact points found without the AABB test and without cached axes.
     #[inline(never)]
     fn without(&self, margin: Length) -> usize {
         let points = self.pairs.iter().map(|&(a, b)| {
@@ -116,7 +116,7 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
     assert_eq!(fast, plain, "the box reject and the cached axis do not change the result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
-    // A pair has at most two points.
+    // A pair has at most two points, so that at least half as many pairs touch.
     let (searches, touching) = (counters.searches as usize, fast.div_ceil(2));
     let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");

@@ -12,7 +12,7 @@
 pub struct FixedTimestep {
     tick_rate: u32,
     ticks_max: u32,
-    /// Time not yet simulated in nanoseconds times the tick rate, so that nothing is rounded.
+    /// Time that is not yet simulated: nanoseconds multiplied by the tick rate, so that no division rounds the time.
     remainder: u64,
 }
 

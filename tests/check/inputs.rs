@@ -27,7 +27,7 @@ fn every_list_of_bytes_is_a_log() {
 
 #[test]
 fn bytes_hold_change_and_repeat_inputs() {
-    // Player 0 gets Walk, player 1 Reach, both held for three more ticks. Then player 1 gets Rest.
+    // Player 0 gets Walk and player 1 gets Reach. Three more ticks repeat both inputs. Then player 1 gets Rest.
     let bytes = [5, 1, 3, 255, 2, 7 | 2 << 3, 1 << 3, 0];
     let (walk, reach) = (Action::Walk { x: 3, y: -1 }, Action::Reach);
     let held = vec![walk, reach];

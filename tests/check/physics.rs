@@ -1,4 +1,4 @@
-//! Games with a physics world must not depend on data outside of its state.
+//! Games with a physics world must not depend on data that is not in the saved state.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::check::{CheckOptions, Depths, Fault, Phases, Variant, check, check_replay};
@@ -9,7 +9,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault. It is the setup, so that one compiled game serves for all faults.
+/// Planted fault. The setup selects it, so that one compiled game serves for all faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Mistake {
     None,
@@ -134,7 +134,7 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
-/// A rollback to a tick before the kick keeps the wind of the later tick.
+/// A rollback from the tick of the kick to an earlier tick keeps the wind of the later tick.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();
@@ -144,7 +144,7 @@ fn a_rollback_shows_before_it_has_happened() {
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
 
-/// The report blames no phase of the step.
+/// The states differ before the step, so the report blames no phase of the step.
 #[test]
 fn a_loss_before_the_step_is_the_fault_of_no_phase() {
     let options =

@@ -8,7 +8,7 @@ use lockstep2d::replay::Verdict;
 
 use super::toy::{Mistake, Toy};
 
-/// The failure of a toy. Its replay must fail in the same way.
+/// Checks a toy with a planted fault, and returns the failure. The replay of the failure must fail in the same way.
 fn failure(mistake: Mistake) -> Failure {
     let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
     let failure = match check::<Toy>(&mistake, &inputs, &CheckOptions::default()) {
@@ -60,7 +60,7 @@ fn a_good_game_passes() {
 fn a_field_that_the_save_lacks_is_found() {
     let failure = failure(Mistake::SaveLacksField);
     assert_eq!(found(&failure), (Variant::Reloaded, &Fault::Loaded));
-    // Two players walk up to each other, and one hits.
+    // In the minimised log, the two players walk up to each other, and one hits.
     assert!((3..=5).contains(&failure.ticks), "{failure}");
     assert!(failure.to_string().contains("the difference is in state that is not saved"), "{failure}");
 }

@@ -6,7 +6,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{LimitKind, Limits, Step, Verdict, VerifiedReplay, verify};
 use lockstep2d::report::{CompareError, Evidence, bisect};
 
-/// Largest number of shapes of a scene: all variants together take as long as twenty runs.
+/// Largest number of shapes of a tested scene. All variants of a scene together take as long as twenty runs of it.
 const SHAPES_MAX: usize = 300;
 
 #[test]
@@ -48,7 +48,7 @@ fn random_commands_pass() {
 fn the_work_within_a_tick_is_limited_for_checks_and_comparisons() {
     let file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../replays/game.replay")).unwrap();
     let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
-    // The largest work of a tick in units, and the part known before that tick.
+    // The largest work of a tick in units, and the part of it that is known before the tick.
     let (mut largest, mut known) = (0, 0);
     loop {
         let before = replay.work();

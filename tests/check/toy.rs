@@ -7,14 +7,14 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// Planted fault. It is the setup, so that one compiled game serves for all faults.
+/// Planted fault. The setup selects it, so that one compiled game serves for all faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Mistake {
     None,
     SaveLacksField,
     BothLackField,
     HashLacksField,
-    /// A shared counter affects the state.
+    /// A static counter affects the state.
     Global,
     /// `load` does not recompute the total.
     LoadKeepsCache,

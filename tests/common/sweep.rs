@@ -1,4 +1,5 @@
-//! Sweeps check one property in many cases. `cargo test` runs a sample, `LOCKSTEP2D_LONG=1` (`.ci/long`) all cases.
+//! Sweeps check one property in many cases. `cargo test` runs a sample of the cases. With `LOCKSTEP2D_LONG=1`, as in
+//! `.ci/long`, it runs all cases.
 
 use std::sync::Mutex;
 use std::thread;

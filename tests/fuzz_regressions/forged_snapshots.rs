@@ -1,4 +1,4 @@
-//! Snapshots with a correct hash of impossible worlds.
+//! Snapshots of impossible worlds, with a correct hash.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -48,7 +48,7 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // The contacts of such a body would be kept a tick longer after its stop than in a world without caches.
+    // After the stop of such a body, a world with caches would keep its contacts a tick longer than one without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
@@ -65,7 +65,7 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
-    // Without caches, the body would be active in the next tick only after it has reached its target.
+    // In a world without caches, such a body would become active only after the tick in which it reaches its target.
     let mut world = weightless();
     let body = world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.move_to(body, (fx!(4.25), fx!(0)), Angle::ZERO).unwrap();
@@ -75,7 +75,7 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
     let settle = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let target = bytes.windows(8).rposition(|window| window == place).expect("the target is there");
-        // Before the target are its tag, that of the island, and the ticks at rest.
+        // In the bytes, the ticks at rest, the tag of the island and the tag of the target come before the target.
         assert_eq!(bytes[target - 6..target], [0, 0, 0, 0, 0, 1]);
         bytes[target - 6] = 1;
     };
@@ -86,7 +86,7 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
-    // It would overlap the marker of an unknown box, so that a pair of bodies that wake would be missed.
+    // Such a box would overlap `Aabb::NOWHERE`, the marker of an unknown box. When bodies wake, a pair would be missed.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let body = world.spawn(&BodyDef::dynamic().position((fx!(3.25), fx!(7.5))), &[ball]).unwrap();
@@ -106,7 +106,7 @@ fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_contact_whose_points_have_one_feature_is_refused() {
-    // Both points would get the impulse of the first one in the next tick, unless the rows of the last tick are reused.
+    // In the next tick, both points would start with the impulse of the first one, unless the solver reuses its rows.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let square = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap());

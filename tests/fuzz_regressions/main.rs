@@ -44,7 +44,7 @@ fn an_outline_that_goes_round_twice_is_refused() {
 
 #[test]
 fn a_removed_shape_moves_the_others_as_their_caches_say() {
-    // The centre of mass moves, and rounding moves the remaining shapes.
+    // The removal moves the centre of mass, and the rounding of the new centre moves the remaining shapes.
     let mut world = weightless();
     for turn in 1..40 {
         let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset((x, y));
@@ -80,7 +80,7 @@ fn many_shapes_at_one_point_are_work_in_their_first_tick() {
     };
     let (_, spent, pairs) = play(u64::MAX);
     assert!(pairs == 79_800 && spent >= pairs, "{spent} work units for {pairs} pairs");
-    // With a smaller budget the pairs are not even listed.
+    // With a smaller budget, the search stops before it has listed all pairs.
     let (is_within, _, pairs) = play(100_000);
     assert!(!is_within && pairs <= 100_000 / 12, "{pairs} pairs");
 }
@@ -121,7 +121,7 @@ fn a_large_ball_beside_a_corner_does_not_touch_it() {
     let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(-10), fx!(-10))), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
-    // The AABBs overlap.
+    // The AABBs overlap, but the ball is 13 m from the corner.
     world.spawn(&BodyDef::dynamic().position((fx!(45), fx!(45))), &[ball]).unwrap();
     world.step();
     assert!(world.events().contact_begin.is_empty(), "expected no contact at a distance of 13 m");
@@ -223,7 +223,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // A search of all earlier shapes would take a minute for 20 000 shapes.
+    // If each new shape were compared with all earlier ones, 20 000 shapes would take a minute.
     let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };
@@ -382,8 +382,8 @@ fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
 
 #[test]
 fn an_overlap_beyond_the_range_of_separations_at_a_predicted_impact() {
-    // The upper sliver turns by 19 degrees in the tick: one end is more than 16 m inside the lower one when the corners
-    // are predicted to touch.
+    // The upper sliver turns by 19 degrees in the tick: one of its ends is more than 16 m inside the lower sliver when
+    // the corners are predicted to touch.
     let sliver = |x: Fx, y: Fx| {
         let corners = [(fx!(-100), fx!(0)), (x, y), (fx!(100), fx!(0))].map(Vec2::from);
         ShapeDef::new(Polygon::hull(&corners).unwrap())

@@ -145,7 +145,7 @@ fn values_out_of_range() {
     ]);
 }
 
-/// The form of a range depends on its ends.
+/// The form in which a message prints a range depends on the ends of the range.
 #[test]
 fn ranges() {
     let joint = |min, max| WorldError::JointOutOfRange { what: "motor speed", value: fx!(-7.5), min, max };

@@ -16,7 +16,7 @@ const SECONDS_MAX: u64 = 5;
 const MEMORY_MAX: usize = 32 << 20;
 /// Largest size of a small file, in bytes.
 const SMALL: usize = 6000;
-/// One in this number of files is not small.
+/// One in this number of mutated files is not small.
 const LARGE_ONE_IN: u32 = 50;
 /// Decoded content of a replay.
 #[derive(PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub(crate) struct Figures {
 }
 
 impl Figures {
-    /// Reads a file within the limits, and counts the answer.
+    /// Reads a file, checks the time and the memory that this takes, and counts the answer.
     pub(crate) fn count<T>(
         &mut self,
         file: &[u8],
@@ -117,7 +117,7 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     file
 }
 
-/// An accepted replay must have the setup, inputs and verdict of an original.
+/// Checks that every mutated replay that is accepted has the setup, inputs and verdict of an original.
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));

@@ -38,7 +38,7 @@ const ALL: [Mutation; 8] = [
     Mutation::Length,
 ];
 
-/// Applies a random mutation. `others` supplies pieces.
+/// Applies a random mutation. Some mutations copy a piece of one of the `others`.
 pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> Mutation {
     let mutation = ALL[below(rng, ALL.len())];
     let length = file.len();
@@ -85,7 +85,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // The place is the beginning of a part, where lengths are, or a random place.
+            // The place is random, or the beginning of a part, where length fields are.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);

@@ -5,7 +5,7 @@ use lockstep2d::session::Status;
 
 use super::Table;
 
-/// The other match begins with tick 0, but the replay has ticks of the first match.
+/// The other match begins with tick 0, so it cannot continue the replay, which has ticks of the first match.
 #[test]
 fn a_peer_that_changes_the_match_has_no_replay() {
     let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };

@@ -25,7 +25,7 @@ struct Table {
     peers: Vec<Option<Peer<Pushers, Port>>>,
     events: Vec<Vec<PeerEvent>>,
     replays: Vec<Vec<u8>>,
-    /// A peer whose game calls `update` only.
+    /// A peer that plays no ticks: its game calls only `update`.
     stopped: Option<usize>,
 }
 
@@ -285,7 +285,7 @@ fn a_late_player_who_is_alone_plays_at_the_rate_of_the_game() {
     assert!((115..=125).contains(&played), "{played} ticks in 2 s");
 }
 
-/// Before the first tick no play can stall, so that only missing packets show that the contact has left.
+/// Before the first tick, no tick can stall. Only the missing packets show that the contact has left.
 #[test]
 fn a_spectator_whose_contact_leaves_the_lobby_finds_another_one() {
     let options = PeerOptions { start_with: 3, ..PeerOptions::rollback() };
@@ -372,7 +372,7 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     // A session has 64 seats, of which the game uses four.
     assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
-    // A game that makes an input for each seat of the peer passes none.
+    // The peer has no seat, so a game that makes an input for each of its seats passes none.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
 }
 

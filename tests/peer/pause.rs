@@ -2,7 +2,7 @@ use lockstep2d::session::Status;
 
 use super::{Table, modes};
 
-/// A peer that does not stop waits for one that does, for five times the patience.
+/// One peer stops, and the other one waits for it for five times the patience.
 #[test]
 fn a_pause_costs_no_seat_and_is_not_caught_up() {
     for options in modes() {

@@ -1,4 +1,4 @@
-//! Key presses that are passed until they are issued, and then forgotten.
+//! A game passes a key press to `advance` until an input with it is issued, and then forgets the press.
 
 use std::time::Duration;
 
@@ -9,8 +9,8 @@ use super::{Pushers, Table, modes};
 
 const PRESS: u8 = 16;
 
-/// The input delay is above 0 from the start with rollback, and jumps when the third peer gets a seat, and with its
-/// links.
+/// With rollback, the input delay is above 0 from the start. It jumps when the third peer gets a seat, and when the
+/// latencies of its links are measured.
 #[test]
 fn a_press_counts_for_one_tick() {
     for options in modes() {

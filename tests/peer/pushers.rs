@@ -30,7 +30,7 @@ pub(crate) struct Pushers {
     fault: Option<Fault>,
 }
 
-/// A bit that flips whenever this tick is simulated.
+/// A bit of a disc that flips whenever `tick` is simulated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fault {
     pub(crate) tick: u64,
@@ -44,7 +44,7 @@ thread_local! {
     pub(crate) static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
 }
 
-/// A seat without a player.
+/// Input of a seat without a player.
 pub(crate) const EMPTY: u8 = 1 << 7;
 
 impl Pushers {
@@ -98,7 +98,7 @@ impl Game for Pushers {
             };
             let push = if input & EMPTY != 0 { Vec2::ZERO } else { Vec2::new(axis(1, 2), axis(4, 8)) };
             let at = self.world.body(*disc).map_or(Vec2::ZERO, |body| body.centre_of_mass());
-            // Discs are never despawned.
+            // This cannot fail, because discs are never despawned.
             let _ = self.world.apply_force(*disc, push, at);
         }
         self.world.step();
@@ -132,7 +132,7 @@ impl Game for Pushers {
     }
 }
 
-/// A new direction every seven ticks.
+/// Input of a bot, with a new random direction every seven ticks.
 pub(crate) fn bot(seat: u32, tick: u64) -> u8 {
     let phase = u32::try_from(tick / 7).unwrap_or(0);
     let mut rng = Rng::with_stream(u64::from(seat), u64::from(phase));

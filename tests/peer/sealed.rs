@@ -1,4 +1,4 @@
-//! A sealed match, and an attacker that sends all its packets again.
+//! A sealed match, and an attacker that sends all packets of the match again.
 
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -5,7 +5,7 @@ use lockstep2d::session::Status;
 
 use super::{Table, identity};
 
-/// Both players know the latency from the time of joining.
+/// Both players know the latency since the second one joined, so the input delay suits it from the first tick.
 #[test]
 fn lockstep_plays_at_full_speed_from_the_start() {
     let options = PeerOptions { start_with: 2, ..PeerOptions::lockstep() };
@@ -20,7 +20,7 @@ fn lockstep_plays_at_full_speed_from_the_start() {
     assert!(table.peer(0).tick() >= 120, "{} ticks in 2 s, delays {delays:?}", table.peer(0).tick());
 }
 
-/// The list of players that a game shows.
+/// A game can list the players with their keys, seats and round-trip times.
 #[test]
 fn keys_and_round_trips_of_all_players_are_known() {
     let mut table = Table::new(30, 0);

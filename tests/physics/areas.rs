@@ -1,4 +1,5 @@
-//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag.
+//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag. `u` is
+//! the velocity of the medium, `a` the acceleration, `c` the rate of the drag, and `R` the radius where gravity is `g`.
 //!
 //! ```text
 //! floating    submerged area * fluid density = area * density
@@ -263,7 +264,7 @@ fn a_planet_may_have_a_sea() {
         .map(|(x, y)| spawn(&mut world, ball, (Fx::from_num(x), Fx::from_num(y))));
     run(&mut world, 900);
     for ball in balls {
-        // A polygon of 32 corners.
+        // The engine treats the circular sea as a polygon of 32 corners.
         close(at(&world, ball).length(), fx!(20), fx!(0.07));
     }
 }

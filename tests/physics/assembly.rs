@@ -321,7 +321,7 @@ pub(crate) struct Outcome {
     pub(crate) gain: f64,
     pub(crate) faults: u64,
     pub(crate) gap: f64,
-    /// Change of energy at the end, like `gain`.
+    /// Change of energy at the end, in the unit of `gain`.
     pub(crate) left: f64,
 }
 

@@ -6,7 +6,7 @@ use lockstep2d::math::{Fx, Vec2, fx_div};
 use lockstep2d::solver::{Gear, JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A brake holds B, or B is fixed. The torque on A is doubled, divided, or reversed by the teeth.
+/// A brake holds B, or B is fixed. The teeth multiply or divide the torque on A, and may reverse it.
 #[test]
 fn torques_are_in_the_ratio_of_the_teeth() {
     for teeth in [[1, -12], [1, 12], [12, -1], [5, 7]] {

@@ -25,7 +25,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
-    // The loop keeps the last contacts, because sleeping bodies have none.
+    // The loop keeps the last contacts, because the world lists no contacts of sleeping bodies.
     let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
@@ -77,7 +77,7 @@ fn heap(height: Fx) -> World {
     world
 }
 
-/// An elastic collision of equal masses in line, without a common face.
+/// An elastic collision of equal masses in line. The capsules meet with their round ends.
 #[test]
 fn capsules_in_line_exchange_velocities() {
     let mut world =

@@ -96,7 +96,7 @@ fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// Without friction, the radial velocity is zero. A chord of 0.2 m is 0.05 mm below its arc.
+/// Without friction, a body that follows the arc has no radial velocity. A chord of 0.2 m is 0.05 mm below its arc.
 #[test]
 fn everything_follows_a_gentle_arc() {
     for (hill, speeds) in [(false, [fx!(1), fx!(5), fx!(20)]), (true, [fx!(1), fx!(5), fx!(10)])] {
@@ -212,12 +212,12 @@ fn corners_are_solid() {
             deep += u32::from(deepest >= fx!(0.15));
         }
     }
-    // A box that grazes an end or the ridge may count as deep for a tick: about 1 in 1000.
+    // In about 1 of 1000 cases, a box that grazes an end or the ridge counts as deep for a tick.
     assert!(deep <= 1, "{deep} of 150 are more than 15 cm deep");
 }
 
-/// A neighbour's line affects the ghost-collision filter up to its far end. A plank over a crest rests on the far side
-/// of the next valley, and a ray hits that side.
+/// A neighbouring link affects the ghost-collision filter only as far as the link reaches. A plank over a crest rests
+/// on the far side of the next valley, and a ray hits that side.
 #[test]
 fn what_reaches_over_a_crest_meets_the_far_side() {
     let points = [(20, -10), (4, 1), (0, -1), (-10, 1), (-30, 1)]

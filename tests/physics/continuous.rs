@@ -137,7 +137,7 @@ fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
             let turned = fx_mul(spin, fx!(0.0166666));
             world.step();
             let now = across(&world);
-            // The blade may have met the ball with its other half, from the other side.
+            // Only one half of the blade counts, because the other half may have met the ball from the other side.
             let is_along = now.x.abs() < fx!(1.9) && last.x.abs() < fx!(1.9);
             let same_half = (now.x > 0) == (last.x > 0) && turned < fx!(0.6);
             passed += u32::from(far && is_along && same_half && (now.y > 0) != (last.y > 0));
@@ -191,8 +191,8 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
     assert_eq!(hashes[0], hashes[1]);
 }
 
-/// The drum turns as fast as the washer's. Sweeping against the drum does not press the boxes together. The motion is
-/// chaotic, so means of several starts are compared.
+/// The drum turns as fast as that of the scene `washer`. Sweeping against the drum does not press the boxes together.
+/// The motion is chaotic, so means of several starts are compared.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     const STARTS: i32 = 8;

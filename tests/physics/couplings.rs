@@ -7,8 +7,9 @@ use lockstep2d::solver::{Gear, JointDef, Prismatic, Pulley, Revolute};
 
 use crate::joint_bench::{Bench, Ground, close};
 
-/// Rope of a body that hangs by 1 m, with its other end on a fixed body, 5 m from the wheel. It is taut when the body
-/// hangs by `taut` m. In a block, the body also slides along a vertical line.
+/// Hangs a body 1 m below a wheel, on a rope whose other end is at a fixed body, 5 m from the other wheel. The rope is
+/// taut when the body hangs `taut` m below its wheel. With `in_block`, a slider also holds the body on a vertical line,
+/// and the solver treats both joints as one block.
 fn hang(ratio: Fx, (on_a, in_block): (bool, bool), taut: Fx) -> (Bench, BodyId, JointId) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(1), fx!(4)), fx!(0));
     let (ground, body) = (bench.a, bench.b);
@@ -47,7 +48,7 @@ fn a_body_that_falls_into_its_rope_does_not_rebound() {
         bench.run(120, |tick, world| {
             let body = world.body(body).expect("there");
             let (y, up) = (body.position().y, body.velocity().y);
-            // It falls for sqrt(2 4 / 10) = 0.89 s.
+            // The body falls for sqrt(2 * 4 / 10) = 0.89 s.
             assert!(y > fx!(-0.005), "{what}, tick {tick}: stretched to {y} m");
             assert!(up < fx!(0.1), "{what}, tick {tick}: rebounds at {up} m/s");
         });
@@ -69,7 +70,7 @@ fn a_weight_stretches_a_rope_as_little_as_any_joint() {
     });
 }
 
-/// `NA wA + NB wB = 0`. Both wheels are about one point, so that they have no pitch point.
+/// `NA wA + NB wB = 0`. Both wheels turn about one point, so they have no pitch point.
 #[test]
 fn a_small_wheel_with_many_teeth_turns_at_the_ratio_of_the_teeth() {
     for (teeth, gyration) in [(1000, fx!(0.002)), (1000, fx!(0.005)), (1000, fx!(0.05)), (10, fx!(0.5))] {

@@ -64,8 +64,8 @@ fn a_thrown_body_keeps_its_velocity() {
         "error of {distance} m after 60 s and 300 m, expected at most 14400 roundings of 3.7 nm"
     );
     let turned = body.angle().to_radians();
-    // 60 rad are 10 turns minus 2.8319 rad. Each of 14400 sub-steps has an error of at most 3.7 nm at 0.35 m, 1.05e-8
-    // rad, in sum 1.5e-4 rad.
+    // 60 rad are 10 turns minus 2.8319 rad. Each of 14400 sub-steps has an error of at most 3.7 nm at 0.35 m, which
+    // is 1.05e-8 rad. The sum is at most 1.5e-4 rad.
     assert!((turned - fx!(-2.831853072)).abs() < fx!(0.0002), "{turned} rad");
 }
 

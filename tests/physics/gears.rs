@@ -1,4 +1,4 @@
-//! Gears, racks and pulleys against theory.
+//! Gears, racks and pulleys against theory. Numbers of teeth `N`, angular velocities `w`, torques `T`, inertias `I`:
 //!
 //! ```text
 //! gear      NA wA + NB wB = 0;   torques NB TA = NA TB;   alpha_A = T / (IA + (NA / NB)^2 IB)
@@ -55,7 +55,7 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-/// The fit would divide by the number of teeth.
+/// The fit divides by numbers of teeth, so it must refuse zero.
 #[test]
 fn a_gear_without_teeth_cannot_be_fitted() {
     let mut world = world(fx!(0));

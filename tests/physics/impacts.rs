@@ -52,7 +52,7 @@ fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     });
 }
 
-/// Balls in free space, one with spin, meet off their centres.
+/// Two balls in free space, one of which spins, collide off centre.
 #[test]
 fn colliding_balls_keep_their_angular_momentum() {
     let speeds = [5, 10, 20].into_iter();
@@ -295,7 +295,7 @@ fn a_ball_in_a_wedge_rests_between_the_walls() {
             world.step();
         }
         let Vec2 { x, y } = world.body(ball).expect("there").position();
-        // The lines x = 0 and y = -2 x.
+        // The walls are the lines x = 0 and y = -2 x.
         let from_left = fx_mul(x * 2 + y, fx!(0.4472135955));
         let overlap = fx!(0.3) - (-x).min(from_left);
         assert!(overlap < fx!(0.0105), "{speed} m/s, {phase}: {overlap} m in a wall, at ({x}, {y})");

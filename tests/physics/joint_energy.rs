@@ -33,7 +33,7 @@ const BEYOND: [Case; 6] = [
 const GAPING: [Case; 2] = [
     // 300 kg hang on a disc of 1 kg, at 15 radii of gyration.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
-    // In tick 112, three bodies of 100 kg jerk at a body of 1 kg with 21 m/s.
+    // In tick 112, three bodies of 100 kg pull a body of 1 kg at 21 m/s.
     Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
 ];
 
@@ -242,8 +242,8 @@ fn a_star_of_welds_that_is_hit_gains_no_energy() {
     }
 }
 
-/// A limb is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. The
-/// solver predicts at most 0.04 radians of it. If it predicted up to 0.25, the energy of a box with four boxes as limbs
+/// A limb is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. The solver predicts at
+/// most 0.04 radians of this rotation. If it predicted up to 0.25 radians, the energy of a box with four boxes as limbs
 /// would rise to 9 times its initial value.
 #[test]
 fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
@@ -309,7 +309,7 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
     });
 }
 
-/// Neither dropping the scratch memory nor restoring a state changes a bit.
+/// Neither clearing the scratch memory nor restoring a state changes a bit of later states.
 #[test]
 fn a_block_depends_on_nothing_but_the_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];

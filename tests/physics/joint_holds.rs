@@ -136,7 +136,7 @@ fn a_wheel_sinks_into_its_suspension() {
         lowest = lowest.min(at.x);
         assert!(at.y.abs() < fx!(0.001), "{} m off the axis", at.y);
     });
-    // 10 / (6 pi)^2; the first overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 of it.
+    // The load sinks by 10 / (6 pi)^2 m. The first overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 of that.
     let sunk = fx!(0.028145);
     close(bench.world.joint_translation(joint).expect("there").x, -sunk, sunk / 100, "m at rest");
     close(lowest, -fx_mul(sunk, fx!(1.372)), sunk / 20, "m at first");
@@ -167,7 +167,7 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A mass ratio of 100 makes joints of any size sag by some centimetres.
+        // A mass ratio of 100 makes joints of any size sag by some centimetres. The smallest joints get equal masses.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

@@ -154,7 +154,8 @@ fn the_angle_of_a_hinge_counts_turns() {
     close(bench.world.joint_angle(joint).expect("there"), -nine, nine / 100, "rad");
 }
 
-/// The limit moves past the slider or strut, whose motor or brake is unlimited. The gap shrinks by `e^-60` in a second.
+/// The limit changes so that the slider or strut is beyond it. The motor or brake of the joint has no largest force.
+/// The gap to the limit shrinks to `e^-60` of its size in a second.
 #[test]
 fn a_strong_motor_returns_to_a_limit_that_it_is_beyond() {
     let kinds: [fn(Fx) -> JointKind; 2] = [

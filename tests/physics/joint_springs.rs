@@ -126,7 +126,7 @@ fn a_point_on_an_arm_swings_faster() {
             (fx!(1.5), fx!(5), fx!(0.5)),
             (fx!(8), fx!(0.5), fx!(0)),
         ] {
-            // B's rotation hardly shortens the arm.
+            // The stretch is so small that the rotation of B hardly shortens the arm.
             let x = arm / 100;
             let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
             let kind = Motor::new().linear_spring(hertz, ratio, Fx::MAX);
@@ -153,7 +153,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
             (fx!(1.5), fx!(1), fx!(0.1)),
             (fx!(1.5), fx!(5), fx!(0.5)),
         ] {
-            // B's rotation hardly changes the arm.
+            // The stretch is so small that the rotation of B hardly changes the arm.
             let x = arm / 1000;
             let long = fx!(2);
             let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);

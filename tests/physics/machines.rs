@@ -36,8 +36,8 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// Box2D's fall has an overlap of 5.0 mm. The depth of a single fall is partly chance: at most 6 mm in 15 of 16 falls,
-/// and 10 mm in the other.
+/// In Box2D, the fall has an overlap of 5.0 mm. The overlap of a single fall is partly chance. It is at most 6 mm in 15
+/// of 16 falls, and 10 mm in the other.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);
@@ -59,7 +59,7 @@ fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
 }
 
 /// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. The share
-/// would be larger if bones got the contacts of predicted impacts, or if two tiles counted as a wedge.
+/// would be larger if bones got contacts for predicted impacts, or if two floor tiles counted as a wedge.
 #[test]
 fn ragdolls_that_rain_hardly_sink_into_each_other() {
     let (mut deep, mut count) = (0, 0);

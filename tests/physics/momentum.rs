@@ -155,7 +155,7 @@ impl Choice {
     /// A square body of 0.1 to 2 m, and an anchor on it.
     fn end(&mut self) -> (BodyDef, Vec2<Fx>) {
         let half = self.0.range(fx!(0.05), fx!(1));
-        // The side divided by the root of 6.
+        // The radius of gyration of a square is its side divided by the square root of 6.
         let gyration = fx_mul(half, fx!(0.81649658));
         let body = BodyDef::dynamic()
             .mass(MassSource::Given { mass: self.mass(), centre: Vec2::ZERO, gyration })
@@ -221,7 +221,7 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// Friction that held up the higher of two balls would also turn the lower one, and nothing bears that torque.
+/// If the friction held up the higher ball, it would also turn the lower one, because nothing else bears its torque.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -247,7 +247,8 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
     }
 }
 
-/// A weight of 10 N is held if the force suffices. Otherwise it falls with the remaining acceleration.
+/// The friction holds a weight of 10 N if its largest force suffices. Otherwise the weight falls with the remaining
+/// acceleration.
 #[test]
 fn friction_holds_a_falling_body_only_if_it_suffices() {
     for (force, falls) in [(fx!(9.5), true), (fx!(10.5), false)] {

@@ -37,7 +37,7 @@ fn height(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").position().y
 }
 
-/// Bodies start 3 m below the platform. They jump through (10 m/s suffice for 5 m), or turn round half-way.
+/// Bodies start 3 m below the platform. They jump through (10 m/s suffice for 5 m), or fall back half-way.
 #[test]
 fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
     for platform in platforms() {
@@ -140,7 +140,7 @@ fn the_direction_belongs_to_the_body() {
     }
 }
 
-/// A restored world keeps the pairs that are passing.
+/// A restored world knows which bodies are passing through a platform.
 #[test]
 fn passing_survives_a_snapshot() {
     let mut world = World::default();
@@ -160,8 +160,8 @@ fn passing_survives_a_snapshot() {
     assert!(height(&restored, body) < fx!(-1));
 }
 
-/// The side on which bodies first touch a platform decides, also if another part of it was nearer at the start of the
-/// tick.
+/// The side of the platform that a body touches first decides whether the body passes, even if another side was nearer
+/// at the start of the tick.
 #[test]
 fn fast_bodies_that_come_over_the_edge_are_held() {
     for ((x, y), velocity) in [

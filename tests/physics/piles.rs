@@ -102,7 +102,7 @@ fn stacks_stand_that_are_not_built_exactly() {
         for tick in 0..3600 {
             world.step();
             let (_, top) = world.bodies().last().expect("boxes");
-            // Nine impacts on top of each other amplify rounding to 0.1 mm or 2 mm.
+            // Nine impacts, one above the other, amplify rounding errors to 0.1 mm or 2 mm, depending on the gap.
             assert!(top.position().x.abs() < fx!(0.003), "gap {gap}, tick {tick}: {} m", top.position().x);
         }
         assert!(speed_max(&world) < fx!(0.0001));

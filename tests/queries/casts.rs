@@ -278,8 +278,8 @@ fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 100, "{hits} {misses}");
 }
 
-/// A time-of-impact search that gives up may report a shape too early. The first hit must not depend on the order of
-/// the broad phase.
+/// A time-of-impact search that gives up may report a shape too early. Even so, the first hit must not depend on the
+/// order in which the broad phase finds the shapes.
 #[test]
 fn turning_casts_do_not_depend_on_the_broad_phase() {
     let mut rng = Rng::new(17);
@@ -327,7 +327,8 @@ fn a_cast_from_within_a_shape_starts_inside_with_and_without_a_turn() {
     }
 }
 
-/// A one-sided chain is open from below, also for queries that start on the right of the line through its lip.
+/// A one-sided chain forms a roof with a vertical or sloping lip at one end. It is open from below, also for queries
+/// that start on the right of the line through the lip.
 #[test]
 fn queries_from_below_a_convex_corner_pass_through_the_roof() {
     for points in [
@@ -346,7 +347,7 @@ fn queries_from_below_a_convex_corner_pass_through_the_roof() {
         let ball = Probe::new(Geometry::circle(fx!(0.1)).expect("valid"), from).expect("valid");
         assert_eq!(world.cast_shape(&ball, way, filter), None, "{points:?}");
         assert_eq!(world.cast_turning(&ball, way, fx!(0.1), filter), None, "{points:?}");
-        // From above, roof and lip are solid.
+        // From above and from beside, roof and lip are solid.
         let above = at(fx!(5) * mirrored, fx!(10));
         assert!(world.cast_ray(above, at(fx!(-10) * mirrored, fx!(-12)), filter).is_some(), "{points:?}");
         let beside = at(fx!(5) * mirrored, fx!(-0.5));

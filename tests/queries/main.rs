@@ -213,7 +213,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let surface = solid.distance(hit.point);
     assert!(surface < TOLERANCE, "{surface} {hit:?}");
     let Some(way) = traced else { panic!("{hit:?} is not on the ray") };
-    // The oracle stops slightly above the surface. Along a flat ray, this is farther from the hit.
+    // The oracle stops slightly above the surface. Along a ray almost parallel to it, the stop is farther from the hit.
     let steep = -translation.normalized().unwrap_or(Vec2::X).widen().dot(hit.normal.widen());
     let apart = (way - fx_mul(hit.fraction, translation.length())).abs();
     if hit.fraction > 0 && steep > fx!(0.05) {

@@ -26,7 +26,7 @@ pub(crate) struct Input {
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,
-    /// Sum of the moods, which is 0 unless inputs were used without being decoded.
+    /// Sum of the moods. It is above 0 only if inputs were used without being encoded and decoded.
     pub(crate) moods: u64,
 }
 

@@ -1,5 +1,5 @@
-//! Splits a replay as `docs/FORMAT.md` specifies, without the library, and repairs checksums and chain hash.
-//! Checkpoints and the final hash would require the game.
+//! Splits a replay as `docs/FORMAT.md` specifies, without the library, and repairs checksums and chain hash. It cannot
+//! repair checkpoints and the final hash, because these require the game.
 
 use lockstep2d::hash::StateHash;
 

@@ -1,4 +1,5 @@
-//! No forged file with repaired checksums matches. Content that no recorder writes is refused with the right flaw.
+//! No forged file with repaired checksums matches. The verifier refuses content that no recorder
+//! writes, and names the right flaw.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::replay::{
@@ -216,7 +217,7 @@ fn a_trailer_out_of_shape_is_refused() {
 
 #[test]
 fn a_chain_hash_of_another_file_is_refused() {
-    // The last checksum covers the trailer: only the chain hash inside it is wrong.
+    // The checksum of the trailer is repaired. Only the chain hash inside the trailer is wrong.
     let file = original();
     let trailer = Forged::take_apart(&file).blocks.pop().unwrap().1;
     let payload = file.len() - 8 - trailer.len();

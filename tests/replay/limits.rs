@@ -59,7 +59,7 @@ fn a_replay_beyond_a_limit_stays_where_it_is() {
 
 #[test]
 fn limits_come_before_the_rest_of_the_file() {
-    // The file ends right after the length field.
+    // The file ends after the length and the kind of the first block. The length exceeds the limit.
     let file = record(35, 10, inputs_at);
     let head = 40 + 7 + 13 + 16 + 8;
     let mut cut = file[..head].to_vec();
@@ -73,7 +73,7 @@ fn limits_come_before_the_rest_of_the_file() {
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 
-/// Counts the bytes that this thread holds, and their peak.
+/// Counts the bytes that this thread has allocated, and their peak.
 struct Counting;
 
 thread_local! {

@@ -1,4 +1,4 @@
-//! Every command can be recorded, accepted or refused.
+//! Every command can be recorded, whether the world accepts or refuses it.
 
 use lockstep2d::body::{
     Area, BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Name, Polygon, ShapeDef,

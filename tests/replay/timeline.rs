@@ -196,7 +196,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // A tick costs three units, and one tick costs 102. Repeated ticks must not count again.
+    // One tick costs 102 units, and every other tick costs three. Repeated ticks must not count again.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {
@@ -205,7 +205,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     }
 }
 
-/// A replay of balls that fall for 41 ticks. The contacts at tick 42 are counted during the step.
+/// A replay of balls that fall for 41 ticks. They touch the floor in tick 42, whose step counts these contacts.
 fn falling_balls() -> Vec<u8> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let floor = Polygon::rectangle(fx!(20), fx!(1)).unwrap();
@@ -268,7 +268,7 @@ fn a_game_that_leaves_its_replay_has_no_limits() {
     assert_eq!(game.state_hash(), hashes[120]);
 }
 
-/// A hidden value affects the sum and is not saved.
+/// A counter whose sum also depends on a value that is not saved.
 struct Forgetful {
     counter: Counter,
     last: i64,
@@ -302,7 +302,7 @@ fn a_game_that_does_not_save_all_of_itself_is_found_out() {
     let mut timeline = open::<Forgetful>(&file, 20, 1 << 20);
     timeline.seek(100).unwrap();
     assert_eq!(timeline.seek(55), Err(SeekError::Forgetful { tick: 50 }));
-    // The timeline does not show the wrong state as that of its tick.
+    // If the timeline reaches tick 50 afterwards, it shows the right state.
     if timeline.seek(50).is_ok() {
         assert_eq!(timeline.game().state_hash(), hashes::<Forgetful>(&file)[50]);
     }

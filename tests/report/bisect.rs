@@ -1,4 +1,5 @@
-//! Bisection finds tick, stage, body and field of a random bit flip, with fewer ticks than three verifications.
+//! Bisection finds tick, stage, body and field of a random bit flip, and simulates fewer ticks than three
+//! verifications.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -119,7 +120,7 @@ fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
         let before = yard.state_hash();
         let Some(path) = flip.apply(&mut yard) else { continue };
         assert_ne!(yard.state_hash(), before);
-        // The step may erase the flip.
+        // The step may erase the flip. Such flips are left out.
         if flip.when == When::Before {
             yard.step(&inputs(flip.tick - 1));
             let mut right = Yard::new(&seed).unwrap();
@@ -250,7 +251,8 @@ fn a_hash_that_is_not_of_its_save_may_be_explained() {
     assert_eq!(found.explanation.map(|told| (told.path, told.bit)), path.map(|path| (path, 0)));
 }
 
-/// Bits of bodies that do not move cannot flip, so a stranger's report makes no work with many of them.
+/// The world refuses to flip bits of bodies that do not move. So an untrusted report with many of these bodies causes
+/// no work.
 #[test]
 fn bodies_that_do_not_move_are_not_searched() {
     FROZEN.set(true);
@@ -262,7 +264,7 @@ fn bodies_that_do_not_move_are_not_searched() {
     assert!(LOADS.get() < 10, "loaded {} states", LOADS.get());
 }
 
-/// A refused flip changes nothing, so the next one needs no load. The flips that are tried are limited.
+/// A flip that the world refuses changes nothing, so the next flip needs no load. The number of tried flips is limited.
 #[test]
 fn the_loads_of_a_search_are_limited() {
     let report = misstated(|_| StateHash(7));

@@ -65,8 +65,8 @@ fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     Some((field, explanation.bit))
 }
 
-/// Hash of the state after the tick of a flip. Flips with the same effect are recognised by it: a changed velocity of a
-/// rolling ball may lead to the same state as a changed spin, and then no comparison can tell which of them it was.
+/// Hash of the state after the tick of a flip. Two flips with the same hash have the same effect: a changed velocity of
+/// a rolling ball may lead to the same state as a changed spin. No comparison can tell these two flips apart.
 fn state_after(seed: u64, flip: Flip) -> StateHash {
     let mut peer = Peer::new(seed, Some(flip));
     while peer.tick < flip.tick {

@@ -46,7 +46,7 @@ fn a_report_comes_back() {
     assert_eq!(report.saves_left_out(), 0);
 }
 
-/// A reader with the limits of a trace accepts it.
+/// A reader accepts a trace that was made with the reader's limits.
 #[test]
 fn a_trace_that_would_be_large_leaves_saves_and_starts_out() {
     let replay = peer().replay();

@@ -1,4 +1,4 @@
-//! Files of strangers: the work of a search is limited, and games of different setups are played separately.
+//! Untrusted files: the work of a search is limited, and games of different setups are played separately.
 
 use std::cell::Cell;
 
@@ -105,7 +105,7 @@ impl Game for Field {
     }
 }
 
-/// Bisects the report of a stranger whose last hash is of no state. Returns the numbers of loads and of work units.
+/// Bisects an untrusted report whose last hash belongs to no state. Returns the numbers of loads and of work units.
 fn search(rules: Rules, inputs_at: impl Fn(u64) -> [u16; 2]) -> (u64, u64) {
     let (mut recorder, mut game) = Recorder::<Field>::start(&rules, 60).unwrap();
     let mut history = History::<Field>::of_ticks(20);
@@ -126,8 +126,8 @@ fn search(rules: Rules, inputs_at: impl Fn(u64) -> [u16; 2]) -> (u64, u64) {
     (LOADS.get(), raw.work() - rules.work)
 }
 
-/// The search may take as long as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to three
-/// times as much as others, because it searches all pairs again.
+/// The search may take as long as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to
+/// three times as much as others, because it searches all pairs again.
 #[test]
 fn work_within_a_step_is_charged_to_the_search() {
     let (loads, work) = search(PLAIN, |_| [0, 0]);
@@ -155,7 +155,7 @@ fn compared(a: Rules, b: Rules) -> Comparison {
     bisect::<Field>(&recorded(a), Some(&recorded(b)), &Limits::default()).unwrap()
 }
 
-/// Setups, and numbers of players, may lead to other states from the same start and with the same inputs.
+/// Games with different setups or numbers of players may reach different states from the same start and inputs.
 #[test]
 fn games_of_different_setups_are_both_simulated() {
     for players in [2, 3] {

@@ -176,7 +176,7 @@ fn a_rider_at_rest_stays_where_it_is_on_its_lift() {
                 let from_lift = state.position - world.body(lift).expect("there").position();
                 assert!((from_lift - at(fx!(1), fx!(1.2001))).length() < fx!(0.000002), "{from_lift:?}");
                 let ground = state.ground.expect("a lift");
-                // Displacements are rounded: up to 1 µm times the tick rate.
+                // Displacements are rounded, so velocities have errors of up to 1 µm times the tick rate.
                 let error = (ground.velocity - velocity).length();
                 assert!(ground.body == lift && error < fx!(0.000001) * i64::from(rate), "{error}");
             }

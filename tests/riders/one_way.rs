@@ -17,7 +17,7 @@ fn platforms() -> [Vec<ShapeDef>; 2] {
     [vec![slab], Chain::new(&ends).one_sided().links().expect("valid")]
 }
 
-/// Steps the world, moves the platform up by `rise`, and moves the character.
+/// Steps the world, in which the platform rises by `platform.1` metres, and moves the character.
 fn tick(world: &mut World, platform: (BodyId, Fx), mover: &Mover, state: &MoverState) -> MoverState {
     let rate = world.config().tick_rate;
     if platform.1 != 0 {
@@ -68,7 +68,7 @@ fn characters_stay_on_planks_that_turn() {
             let body = world.spawn(&def, &platform).expect("valid");
             let mover = Mover::new(shape).expect("valid");
             let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
-            // 40 degrees, with ground up to 45 degrees.
+            // The plank turns by 40 degrees. Slopes up to 45 degrees are ground.
             for number in 0..rate * 14 / 10 {
                 state = tick(&mut world, (body, fx!(0)), &mover, &state);
                 let case = format!("{name}, {rate} Hz, {spin} rad/s, tick {number}");
@@ -78,7 +78,8 @@ fn characters_stay_on_planks_that_turn() {
     }
 }
 
-/// Vertices of a valley, each of which turns by 1e-4 rad: a smaller turn than the gap of a cast shows at once.
+/// At each vertex of the valley, the ground turns by only 1e-4 rad. A cast keeps a gap to the ground, which hides so
+/// small a turn at first.
 #[test]
 fn characters_walk_through_flat_valleys() {
     let height = |x: Fx| x * x / 2000;
@@ -100,8 +101,8 @@ fn characters_walk_through_flat_valleys() {
     }
 }
 
-/// The jump ends in every part of the platform. A character that turns round in it falls back, also if it is saved
-/// half-way.
+/// Jumps end in every part of the platform. A character whose jump ends inside the platform falls back, also if its
+/// state is encoded and decoded in every tick.
 #[test]
 fn characters_turn_round_inside_platforms() {
     for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {

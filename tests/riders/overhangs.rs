@@ -38,12 +38,12 @@ fn a_character_does_not_climb_what_hangs_over_its_floor() {
 fn a_character_does_not_climb_a_step_without_headroom() {
     for ((name, shape), tick_rate) in shapes().into_iter().flat_map(|shape| RATES.map(|rate| (shape, rate))) {
         for (height, room) in [(fx!(0.1), false), (fx!(0.25), false), (fx!(0.1), true), (fx!(0.25), true)] {
-            // The ball's widest part meets the ceiling before the step.
+            // The ball is left out, because its widest part meets the ceiling before the step.
             if name == "ball" {
                 continue;
             }
             let mut world = world(tick_rate);
-            // A box climbs above the step by up to its displacement in a tick.
+            // A box climbs above the step by up to its displacement in a tick, so it needs more room than its height.
             let ceiling = height + if room { fx!(1.6) } else { fx!(1.35) };
             block(&mut world, at(fx!(0), fx!(-1)), at(fx!(50), fx!(1)));
             block(&mut world, at(fx!(7), height / 2), at(fx!(2), height / 2));

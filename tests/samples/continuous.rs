@@ -40,7 +40,7 @@ fn a_bullet_bounces_in_a_room() {
     }
 }
 
-/// Sample "Bounce Humans", under turning gravity.
+/// Sample "Bounce Humans", under gravity that turns.
 #[test]
 fn ragdolls_stay_in_a_room_of_bumpers() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -296,8 +296,8 @@ fn a_ball_rests_in_a_wedge() {
             ball(fx!(0.3)).friction(fx!(0.2)),
         );
         stage.run(1200);
-        // The walls enclose atan(0.5), 26.57 degrees. The centre is 0.3 m from the upright wall, and 0.3 / tan(13.28
-        // degrees) above the lowest point.
+        // The walls enclose an angle of atan(0.5) = 26.57 degrees. The centre is 0.3 m from the upright wall, and 0.3 m
+        // / tan(13.28 degrees) above the lowest point.
         near(stage.place(body).x, fx!(-0.3), fx!(0.005));
         near(stage.place(body).y, fx!(1.271), fx!(0.02));
         assert!(stage.velocity(body).length() < fx!(0.01));

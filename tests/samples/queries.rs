@@ -90,7 +90,7 @@ fn casts_through_a_world() {
     assert!(!stage.world.cast_ray_any(at!(-3, 1), way, all));
     let hits = stage.world.cast_ray_all(from, way, all);
     assert_eq!(hits.iter().map(|hit| hit.shape).collect::<Vec<_>>(), shapes);
-    // These hits are those of the sample's mode "multiple".
+    // The first three hits are those of the sample's mode "multiple".
     assert!(hits.iter().take(3).zip(0..).all(|(hit, i)| hit.point.x == num(2 * i) - fx!(0.5)));
     let first = stage.world.shape(shapes[0]).expect("there").body();
     let others = QueryFilter::default().except(first);

@@ -88,7 +88,7 @@ fn groups_land_on_their_floors() {
 /// Example `damping2`: `v = v0 exp(-c t)`.
 #[test]
 fn damping_is_exponential() {
-    // Shares exp(-c / 2) for c = 1 to 10.
+    // Shares of the velocity that are left after half a second: exp(-c / 2) for a damping c of 1 to 10.
     let left = [
         fx!(0.60653),
         fx!(0.36788),

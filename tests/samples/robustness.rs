@@ -207,7 +207,8 @@ fn a_body_that_became_fixed_stops_a_bullet() {
     }
 }
 
-/// Sample "Unstable Prismatic Joints", also with the radius that crashes according to a comment in the sample.
+/// Sample "Unstable Prismatic Joints", also with the radius at which Box2D crashes, as a comment in the
+/// sample says.
 #[test]
 fn a_light_ball_between_heavy_ones_is_stable() {
     for radius in [fx!(0.5), fx!(0.1)] {

@@ -132,7 +132,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
         }
         stage.run(1);
     }
-    // The target turns by a sixth of a turn per second.
+    // The welds turn their target by a sixth of a turn per second.
     let turn = lockstep2d::math::PI / 3;
     for &(body, _, place) in &ring {
         near(stage.place(body).distance(place), fx!(0), fx!(0.01));

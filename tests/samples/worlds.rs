@@ -18,7 +18,7 @@ fn tiles_carry() {
         let tiles: Vec<ShapeDef> = (0..height.round().to_num::<i32>() + 12).map(tile).collect();
         stage.spawn(BodyDef::fixed().position(Vec2::new(num(column), Fx::ZERO)), &tiles);
     }
-    // The valley is in the middle, 7.5 m high.
+    // The bottom of the valley is in the middle, with tiles up to 7.5 m.
     let place = |i: i32| Vec2::new(fx!(17) + fx!(0.6) * i64::from(i % 10), fx!(10) + num(i / 10) / 2);
     let boxes: Vec<_> = (0..50).map(|i| stage.add(place(i), rect(fx!(0.3), fx!(0.2)))).collect();
     for tick in 0..600 {

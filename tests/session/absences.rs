@@ -22,7 +22,7 @@ fn a_vote_to_go_on_without_a_peer_ends_when_the_peer_is_back() {
     let still = sim.peers[0].session.played();
     (1..3).for_each(|other| sim.peers[0].session.go_on_without(id(other)));
     sim.run(14 * S);
-    // The votes may start a ballot before all others are heard. It removes nobody.
+    // The votes may start a ballot before the host hears all others again. The ballot removes nobody.
     let spans = &sim.newest_view().spans;
     assert!(spans.len() == 3 && spans.iter().all(Span::is_open), "{spans:?}");
     assert_eq!(sim.failure, None);
@@ -41,7 +41,7 @@ fn a_vote_to_go_on_without_a_peer_that_stands_still_counts() {
     assert_eq!((sim.failure.clone(), sim.peers[2].lost_seats), (None, 1));
 }
 
-/// A player with 62 seats loses them and returns, again and again. The spectator has missed all of it.
+/// A player with 62 seats loses them and returns, again and again. The spectator is cut off all the time.
 #[test]
 fn a_spectator_returns_after_hundreds_of_spans() {
     let mut sim = Sim::new(9, 4);

@@ -1,4 +1,4 @@
-//! Peers that have gone leave no traffic and take no room.
+//! Peers that have gone cause no traffic, and new peers can take their places.
 
 use std::cmp::Reverse;
 
@@ -48,7 +48,7 @@ fn nothing_is_sent_to_a_contact_that_has_gone() {
     assert_eq!(net.sent_to[3], sent);
 }
 
-/// As many processes as a peer may know have joined and gone.
+/// Before the last join, as many processes have joined and gone as a peer may know at a time.
 #[test]
 fn a_match_that_many_have_left_admits_more() {
     let mut net = Net::new(5 * MS, 0, 100);
@@ -129,7 +129,7 @@ fn a_dropped_player_that_asks_again_is_back() {
     net.run(15 * S);
     net.assert_all_play();
     assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 3);
-    // A player with a vote loses its seat for a second.
+    // A player with a vote that asks again loses its seat for a second.
     net.nodes[2].endpoint.ask(address(2));
     net.run(20 * S);
     net.assert_all_play();
@@ -165,7 +165,7 @@ fn two_matches(state_bytes: usize) -> Net {
     net
 }
 
-/// The host of the first match still serves the player that has gone. Both matches have one tag.
+/// The host of the first match still serves the player that has gone. Both matches have the same tag.
 #[test]
 fn nothing_of_a_match_reaches_the_next_one() {
     let mut net = two_matches(1000);
@@ -179,7 +179,7 @@ fn nothing_of_a_match_reaches_the_next_one() {
     assert!(session(&mut net, 1).link(id(0)).is_none());
 }
 
-/// Its contact changes to another match during the download.
+/// The contact of the guest changes to another match while the guest downloads the state.
 #[test]
 fn a_guest_gets_no_state_of_a_match_that_its_contact_has_left() {
     let mut net = two_matches(4 << 20);
@@ -197,7 +197,7 @@ fn a_peer_without_a_session_wants_no_state() {
     let mut net = two_matches(1000);
     net.join(Role::Player { seats: 1 }, 2);
     net.run(net.now + 55 * MS);
-    // The hello with the cookie is on its way.
+    // The hello with the cookie is in flight, and arrives now.
     for Reverse((at, _, from, _, bytes)) in net.heap.iter().filter(|packet| packet.0.3 == 2) {
         net.nodes[1].endpoint.receive(*at, address(*from), bytes);
     }
@@ -221,7 +221,7 @@ fn a_key_that_is_kicked_gets_no_seat_and_knows_it() {
     let again = net.add(again);
     net.run(8 * S);
     assert_eq!([1, again].map(|index| net.status(index)), [Some(Status::Kicked); 2]);
-    // A spectator has no seat to lose.
+    // A kicked key may still watch, because spectators have no seats.
     session(&mut net, again).set_role(Role::Spectator);
     net.run(9 * S);
     assert_eq!(net.status(again), Some(Status::Watching));

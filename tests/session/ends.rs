@@ -1,4 +1,4 @@
-//! Ends of a match that come after a peer has played further, or before it has played everything.
+//! A match may end at a tick that a peer has already passed, or before a peer has played all ticks.
 
 use lockstep2d::session::{Config, Role, Status};
 
@@ -25,8 +25,8 @@ fn ticks_after_the_end_are_taken_back() {
     }
 }
 
-/// The guest does not hear the host from half a second before to some seconds after the decision. The inputs that it
-/// lacks take several packets.
+/// The guest does not hear the host from half a second before to some seconds after the decision. The inputs that
+/// the guest lacks take several packets.
 #[test]
 fn a_peer_that_leaves_answers_until_the_others_have_its_inputs() {
     let mut sim = players(2, link(MS), |config| {

@@ -6,7 +6,7 @@ use super::{storm, sweep};
 
 /// Largest number of matches to play with a fault.
 const MATCHES: u64 = 300;
-/// Largest number of matches for a fault that breaks an invariant in about one of a thousand storms, in the long run.
+/// Like [`MATCHES`], in the long run, for a fault that breaks an invariant in about one of a thousand storms.
 const MATCHES_RARE: u64 = 2000;
 
 /// Each fault, the first seed, and the difference between seeds. With a difference of 10, all matches are of one

@@ -40,7 +40,7 @@ impl Match {
     pub(super) fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
-        // A view that only crashed peers have installed is not known to any living peer.
+        // Only crashed peers may have installed the newest view, so the newest view of the living peers counts.
         let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
         let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);
@@ -90,7 +90,7 @@ impl Match {
         (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
     }
 
-    /// A peer that has not played the two ticks that it should have played since `before`.
+    /// A peer that has confirmed fewer than two ticks since `before`.
     pub(super) fn stands_still(&self, before: &[u32]) -> Option<usize> {
         if self.class.ends_early() || self.all_seated() != Some(true) {
             return None;

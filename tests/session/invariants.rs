@@ -1,4 +1,5 @@
-//! One history, equal states, and a quorum that holds all ticks before the cut of a view.
+//! Invariants of a match: one history, equal states, and a quorum that has the inputs of all ticks before the cut of a
+//! view.
 
 use lockstep2d::session::{Event, InputStatus, PeerId, Status, Tick, TickInputs, View};
 
@@ -44,7 +45,7 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// A peer that has left keeps answering until all others know this and have its inputs, or for a long time.
+    /// A peer that has left keeps answering until all others know of it and have its inputs, or until a timeout.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
@@ -94,7 +95,7 @@ impl Sim {
         self.peers[index].seen_view = self.peers[index].session.view().number;
     }
 
-    /// A quorum of the previous view holds all ticks before the cut.
+    /// A quorum of the previous view has the inputs of all ticks before the cut.
     fn check_cut_is_held(&mut self, view: &View) {
         let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
             return;

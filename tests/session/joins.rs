@@ -13,7 +13,7 @@ fn players_join_while_the_others_play_at_full_speed() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(6 * S);
     net.assert_all_play();
-    // The second peer is the contact of the third. It sends the address of the first peer.
+    // The second peer is the contact of the third one, and sends it the address of the first peer.
     net.join(Role::Player { seats: 2 }, 2);
     net.run(10 * S);
     net.assert_all_play();
@@ -49,7 +49,7 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
-/// A packet without inputs is smaller than one with a few.
+/// Packets without inputs are smaller than others, so their mean size shows that they have none.
 #[test]
 fn a_peer_gets_no_inputs_while_it_downloads_a_state() {
     let mut net = Net::new(20 * MS, 0, 20 << 20);
@@ -184,7 +184,7 @@ fn an_address_may_change() {
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
-/// A NAT gives a player another port, at which a peer hears the player only after it has sent a packet there.
+/// A NAT gives a player another port, and blocks packets from there to a peer until this peer has sent a packet there.
 #[test]
 fn a_changed_address_is_known_from_others() {
     let mut net = Net::new(30 * MS, 0, 1000);

@@ -1,4 +1,4 @@
-//! Lockstep plays at full speed with a delay of the one-way latency and a tick.
+//! Lockstep plays at full speed with a delay of the one-way latency plus one tick.
 
 use lockstep2d::session::{Config, Role, View};
 
@@ -64,7 +64,7 @@ fn lockstep_plays_at_full_speed_at_any_latency() {
     }
 }
 
-/// Inputs of two players that do not hear each other pass a third one.
+/// Two players do not hear each other. A third one relays their inputs.
 #[test]
 fn lockstep_plays_at_full_speed_in_a_star() {
     let mut sim = players(3, link(75 * MS), |_| ());
@@ -132,7 +132,8 @@ fn measurements_are_those_of_the_links() {
     assert_eq!(link.bytes_sent, sim.bytes_from(0));
 }
 
-/// With a long delay, the inputs of the slow peer are there, and all stop because they may not run further ahead of it.
+/// With a long input delay, the inputs of the slow peer arrive in time. The others stop because they may not run
+/// further ahead of the slow peer.
 #[test]
 fn a_slow_peer_slows_others_and_is_named() {
     for (count, delay, guess) in [(3, 0, 0), (3, 20, 0), (2, 20, 0), (3, 0, 8), (3, 20, 8)] {
@@ -185,7 +186,8 @@ fn a_match_keeps_its_pace_when_the_latency_falls() {
     assert!((297..320).contains(&played), "{played} ticks in 5 s");
 }
 
-/// In matches of more than 32 peers a packet is sent only in every third tick, and inputs wait for it.
+/// In matches of more than 32 peers, a peer sends a packet only in every third tick, and its inputs wait for this
+/// packet.
 #[test]
 fn a_large_match_plays_at_full_speed() {
     let mut sim = players(34, link(40 * MS), |config| config.tick_micros = 50_000);

@@ -120,7 +120,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
-/// The host votes during the outage, before or after the others go on.
+/// The host votes to kick the peer that is cut off, before or after the others go on without it.
 #[test]
 fn somebody_who_is_kicked_during_an_outage_knows_it_afterwards() {
     for vote in [7 * S, 11 * S] {
@@ -134,7 +134,7 @@ fn somebody_who_is_kicked_during_an_outage_knows_it_afterwards() {
     }
 }
 
-/// One vote of five, from a peer that is not the host.
+/// Only one peer of five, which is not the host, votes to kick a player.
 #[test]
 fn a_vote_without_a_quorum_keeps_nobody_out() {
     let mut sim = players(5, link(30 * MS), |_| ());
@@ -321,7 +321,7 @@ fn a_peer_that_was_away_for_too_long_knows_it() {
     assert!(sim.peers[0].events.is_empty() && sim.failure.is_none());
 }
 
-/// The others have forgotten the inputs of the ticks that the spectator has not played.
+/// While the spectator pauses, it stores the inputs of the ticks that it has not played. The others forget them.
 #[test]
 fn a_spectator_that_pauses_keeps_the_inputs() {
     let mut sim = players(2, link(30 * MS), |config| config.log_ticks = 128);

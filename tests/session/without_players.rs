@@ -1,4 +1,4 @@
-//! A dedicated server in ticks that no peer plays.
+//! A dedicated server in ticks without players.
 
 use lockstep2d::session::{Config, Role, Status, View};
 
@@ -47,7 +47,8 @@ fn status(sim: &Sim, index: usize) -> Status {
     sim.peers[index].session.status()
 }
 
-/// Player and spectator learn at once that the visitor came and left, with ticks without players before its first one.
+/// After their outages, player and spectator learn at the same time that the visitor came and that it left. Before the
+/// visitor came, there were ticks without players.
 #[test]
 fn an_outage_may_last_longer_than_a_visit() {
     let mut sim = server();

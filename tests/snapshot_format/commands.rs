@@ -96,7 +96,7 @@ fn shape_id() -> Written {
     w().u32(0).u32(1)
 }
 
-/// A polygon without a default value in any setting.
+/// A polygon whose settings all differ from their defaults.
 fn polygon() -> (ShapeDef, Written) {
     polygon_with(None, w().u8(1))
 }
@@ -331,7 +331,7 @@ fn the_bytes_of_a_setup_are_those_of_the_document() {
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
 }
 
-/// Reports name every value of an area. A sensor without one is listed as `sensor` only.
+/// Reports name every value of an area. A sensor without an area is listed as `sensor` only.
 #[test]
 fn an_area_is_listed_by_its_names() {
     let paths = |def: &ShapeDef| -> Vec<String> {

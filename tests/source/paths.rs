@@ -9,7 +9,7 @@ pub(crate) struct PathUse {
     /// Path from the root of the crate, as in `["world", "cache", "Scratch"]`.
     pub(crate) path: Vec<String>,
     pub(crate) line: usize,
-    /// Name of a `pub use`.
+    /// Name that a `pub use` exports.
     reexport: Option<String>,
     /// Whether the module itself uses the name of a `pub use`.
     is_used_here: bool,
@@ -87,7 +87,7 @@ impl Crate {
     }
 }
 
-/// `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`, and empty for the root.
+/// Module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`, empty for the root.
 pub(crate) fn module_of(path: &str) -> Vec<String> {
     let path = path.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
@@ -155,8 +155,8 @@ fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Reads a path or a tree. Adds the names of each path, and the name that the path brings into scope. Returns the index
-/// of the next token.
+/// Reads a path or a tree of a `use`. Adds the names of each path, and the name that the path brings into scope.
+/// Returns the index of the next token.
 fn read_tree(
     tokens: &[Token],
     start: usize,

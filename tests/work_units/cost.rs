@@ -23,7 +23,7 @@ pub(super) fn computed() -> Duration {
 /// Commands of a tick, given its number.
 pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
-/// Largest number of repetitions of a pair of short commands in a tick. They fit into a block of a file.
+/// Largest number of repetitions of a pair of short commands in a tick. This number fits into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
 /// Maximum number of doublings of the size of a case until a tick takes long enough.
@@ -119,8 +119,8 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
         let file = record(setup, 1, &(Box::new(script) as Script<'_>));
         (costs(&file), file)
     };
-    // The commands have to take at least as long as the rest of the tick. The rest takes no longer than a tick with the
-    // commands once.
+    // The commands have to take at least as long as the rest of the tick. The rest takes no longer than a tick that
+    // executes the commands once.
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);
@@ -145,7 +145,7 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with limits of a half, a fifth and a twentieth of its work, which the setup alone may exceed.
+/// Verifies a file with limits of a half, a fifth and a twentieth of its work. The setup alone may exceed these limits.
 /// Returns the name of the case if verification stops later than the units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {

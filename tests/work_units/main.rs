@@ -2,8 +2,8 @@
 //! debug assertions). The limits of a verifier depend on this bound.
 //!
 //! Each case is recorded, and played by the verifier's player, which charges the units. A limit below the work of the
-//! case must stop verification within the time of its units. Times are processor times of the thread, where the system
-//! reports them, and the shortest of several runs, so that other load has little effect.
+//! case must stop verification within the time that the units of the limit allow. Times are processor times of the
+//! thread, where the system reports them, and the shortest of several runs, so that other load has little effect.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
 mod builders;

@@ -1,6 +1,6 @@
 //! Edits whose cost depends on joints, on contacts of sleeping bodies, or on slots of bodies that are gone; and worlds
-//! whose cost must not be overestimated. The commands of a tick are charged before the first one is executed, so that
-//! the world has to count visits of joints and contacts.
+//! whose cost must not be overestimated. The commands of a tick are charged before the first one is executed. The
+//! numbers of visited joints and contacts are not known by then, so the world has to count them.
 
 use lockstep2d::body::{BodyDef, BodyKind, MassSource};
 use lockstep2d::fx;
@@ -49,7 +49,7 @@ fn edits_of_a_body_with_many_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// Two bodies with `count` shapes each on one spot, which fall asleep in the second tick.
+/// Two bodies with `count` shapes each, all at one point. The bodies fall asleep in the second tick.
 fn sleepers(config: Config, count: i64, third_tick: Vec<Command>) -> Case<'static> {
     let count = usize::try_from(count).expect("a number");
     let crowd = |shape| spawn(BodyDef::dynamic(), vec![shape; count]);
@@ -108,7 +108,7 @@ fn edits_beside_vacant_slots() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// A tick may visit all slots, and a visit takes some 10 ns.
+/// A tick may visit all slots, and a visit takes some 10 ns. So vacant slots count as work.
 #[test]
 fn ticks_beside_vacant_slots() {
     let game = Sandbox::new(&setup(beside_vacant_slots(100_000), still())).expect("a setup");
@@ -126,7 +126,7 @@ fn mean_work(commands: Vec<Command>, config: Config) -> u64 {
     (play.work() - started) / ticks
 }
 
-/// Two fixed shapes never make a pair, so that scenery counts only as its shapes.
+/// Two fixed shapes never make a pair, so scenery costs work for its shapes, but not for pairs of them.
 #[test]
 fn a_day_among_many_tiles_is_within_the_default_limits() {
     let tiles = (0..2000).map(|x| square(fx!(0.5)).offset((fx!(0.05) * x, fx!(0)))).collect();

@@ -27,7 +27,7 @@ impl Path {
     }
 }
 
-/// Random sensor about its centre.
+/// Random geometry of a sensor, about the origin of its body.
 fn gate(rng: &mut Rng) -> Geometry {
     let turned = |half: Fx, rng: &mut Rng| {
         Rot::from_angle(Angle::from_radians(rng.range(fx!(-0.5), fx!(0.5))))
@@ -170,7 +170,7 @@ fn check_course(case: u64) {
     }
 }
 
-/// A slanted wall deflects a ball to where its enlarged AABB (fat box) does not reach.
+/// A slanted wall deflects a ball to a place outside of the ball's fat AABB.
 #[test]
 fn a_deflected_visitor_is_noticed_in_the_same_tick() {
     let mut rng = Rng::new(5);
@@ -185,7 +185,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
         let start = Vec2::new(rng.range(fx!(-6), fx!(-2)), fx!(0));
         let def = BodyDef::dynamic().position(start).velocity((speed, fx!(0)));
         let flying = spawn(&mut world, def, super::ball(fx!(0.2)).restitution(fx!(1)).friction(fx!(0)));
-        // The gate is outside of the fat box of the first tick, which covers the straight flight of that tick.
+        // The gate is outside of the ball's fat AABB of the first tick, which covers the straight flight of that tick.
         let height = rng.range(fx!(1), fx!(3));
         let gate = super::rectangle(fx!(8), rng.range(fx!(0.01), fx!(0.5))).sensor();
         let gate = spawn(&mut world, BodyDef::fixed().position((fx!(-2), height)), gate);

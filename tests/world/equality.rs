@@ -1,5 +1,5 @@
-//! Neither caches nor the broad phase affect results: six worlds receive equal commands, and must have equal hashes and
-//! events after every tick.
+//! Neither caches nor the broad phase affect results: eight worlds receive equal commands, and must have equal hashes
+//! and events after every tick.
 
 use lockstep2d::body::ShapeId;
 use lockstep2d::collision::BroadPhaseKind;

@@ -44,7 +44,7 @@ fn a_motor_pushes_in_the_direction_of_its_velocity() {
     direction_is(world.body(id).expect("there").velocity(), (fx!(0.894427), fx!(0.447214)));
 }
 
-/// A force keeps its line of action when the centre of mass moves: here onto that line.
+/// A force keeps its line of action when the centre of mass moves. Here, the centre of mass moves onto this line.
 #[test]
 fn a_force_acts_at_its_point_although_the_mass_changes() {
     let mut world = weightless();
@@ -57,7 +57,7 @@ fn a_force_acts_at_its_point_although_the_mass_changes() {
     assert!(body.angular_velocity().abs() < fx!(0.0001), "{}", body.angular_velocity());
 }
 
-/// 100 N accelerate 1 kg for a tick, wherever the spring would pull without this limit.
+/// The largest force of 100 N accelerates 1 kg for a tick, however hard the spring would pull without this limit.
 #[test]
 fn a_long_spring_of_limited_force_pulls_along_its_direction() {
     for (hertz, scale, in_block) in [
@@ -95,7 +95,7 @@ fn a_motor_brakes_a_fast_body_along_the_difference_of_the_velocities() {
     let motor = Motor::new().linear((fx!(500), fx!(100)), fx!(10));
     world.add_joint(&JointDef::new(wall, id, motor)).expect("valid");
     world.step();
-    // 890 by 160 m/s.
+    // The velocities differ by 890 m/s and 160 m/s.
     direction_is(world.body(id).expect("there").velocity() - start, (fx!(0.984221), fx!(0.176939)));
     assert_eq!(world.faults(), 0);
 }
@@ -134,7 +134,7 @@ fn very_heavy_and_very_light_bodies_are_turned_by_impulses() {
             let source = MassSource::Given { mass, centre: Vec2::ZERO, gyration };
             let id = spawn(&mut world, BodyDef::dynamic().mass(source), ball(fx!(0.01)));
             world.apply_impulse(id, (fx!(0), impulse * sign), (arm, fx!(0))).expect("there");
-            // The products are in the order in which they fit.
+            // In this order of the factors, no product exceeds its format.
             let per_arm =
                 fx_div(fx_mul(fx_div(arm, gyration).expect("not 0"), impulse), mass).expect("not 0");
             let expected = fx_div(per_arm, gyration).expect("not 0") * sign;

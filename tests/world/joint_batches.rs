@@ -68,7 +68,7 @@ fn given(rng: &mut Rng) -> MassSource {
     MassSource::Given { mass: rng.range(fx!(1), fx!(9)), centre, gyration: rng.range(fx!(0.2), fx!(1)) }
 }
 
-/// Invalidates prepared joints by a random change, and adds a joint.
+/// Makes a random change, which may invalidate prepared joints, and adds a joint.
 fn change(world: &mut World, rng: &mut Rng) {
     let bodies: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
     let joints: Vec<_> = world.joints().map(|(id, joint)| (id, *joint.def())).collect();

@@ -35,7 +35,7 @@ fn kinds() -> [JointKind; 8] {
     ]
 }
 
-/// A body on an anchor of a fixed body, whose origin is near the anchor or far away.
+/// A body that is joined to a fixed body. The origin of the fixed body is near the anchor or far away.
 fn pendulum(kind: JointKind, ground: (Vec2<Fx>, Angle), swapped: bool) -> (World, BodyId, JointId) {
     let anchor = Vec2::new(fx!(3000), fx!(-7));
     let mut world = World::default();
@@ -176,7 +176,7 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// Joints of dynamic bodies give equal results bit for bit.
+/// If joints of dynamic bodies have the softness of the world as their own, the results are equal bit for bit.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {

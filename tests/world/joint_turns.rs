@@ -90,7 +90,7 @@ fn a_rolled_rack_keeps_its_place_when_it_is_fitted_or_changed() {
     let rolled = *world.joint(rack).expect("there").def();
     let fitted = world.fit_joint(&rolled).expect("valid");
     assert!((fitted.frame_b.anchor - rolled.frame_b.anchor).length() > fx!(9), "it has rolled three turns");
-    // The rack may be set off by a millimetre. It stays on its teeth, not on those that are whole turns away.
+    // A new definition may move the rack by a millimetre. The rack then stays on its teeth, and does not jump by turns.
     let moved = rolled.anchor_b(rolled.frame_b.anchor + Vec2::new(fx!(0.001), fx!(0.001)));
     for def in [fitted, rolled.user_data(7), moved] {
         let mut world = world.clone();

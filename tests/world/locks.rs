@@ -135,7 +135,8 @@ fn locks_may_change_while_it_moves() {
     assert!(world.body(id).expect("there").angle() != Angle::ZERO, "expected the body to turn again");
 }
 
-/// A rope has no torque about its anchor, also if one of its bodies cannot turn. A motor has its torque.
+/// The reported torque of a rope about its anchor is zero, even if one of its bodies cannot turn. A motor between such
+/// bodies reports its torque.
 #[test]
 fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
     let mut world = World::default();
@@ -159,7 +160,7 @@ fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
     close(world.joint_force(motor).expect("there").1, fx!(10), fx!(0.1));
 }
 
-/// A body that a kinematic body catches within a tick is carried for the rest of the tick.
+/// A kinematic body that hits a body within a tick carries it for the rest of the tick, but not along locked axes.
 #[test]
 fn a_kinematic_body_does_not_carry_along_locked_axes() {
     let mut world = weightless();

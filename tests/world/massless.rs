@@ -1,5 +1,5 @@
-//! A dynamic body has no mass if it has no shape, only lines, or density 0. It coasts, and pushes like a kinematic
-//! body.
+//! A dynamic body has no mass if it has no shape, only lines, or density 0. It coasts, and pushes others like a
+//! kinematic body.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

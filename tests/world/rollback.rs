@@ -1,4 +1,4 @@
-//! A restore brings back the saved state, whatever happened since then and whatever snapshots share.
+//! A restore brings back the saved state, regardless of what happened since then and of the data that snapshots share.
 
 use lockstep2d::codec;
 use lockstep2d::collision::BroadPhaseKind;
@@ -188,7 +188,7 @@ fn snapshots_go_to_other_threads() {
     sent(&world);
 }
 
-/// A random number or a change to a clone changes the hash, and a restore brings it back.
+/// Drawing a random number changes the hash, and so does a change to a clone. A restore brings the hash back.
 #[test]
 fn random_numbers_and_clones_are_hashed_as_they_are() {
     let (mut world, _) = world_with_floor();
@@ -236,8 +236,8 @@ fn snapshots_come_back_from_their_bytes() {
     }
 }
 
-/// A thin rod that sweeps into a wall from which a joint keeps it apart, in a tick without new fat boxes. The restored
-/// worlds had no such joint before.
+/// A thin rod moves into a wall in a tick without new fat AABBs, and a joint disables the collisions of rod and wall.
+/// The worlds that are restored had no such joint before.
 #[test]
 fn a_restore_brings_back_which_pairs_joints_keep_apart() {
     let mut world = weightless();

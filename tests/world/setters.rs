@@ -318,7 +318,7 @@ fn kinds_that_a_body_cannot_have_are_refused() {
     });
 }
 
-/// A fixed body stops, so that its rotation is no obstacle.
+/// The speed limit does not prevent the change, because a body that becomes fixed stops.
 #[test]
 fn a_fast_rotating_body_becomes_fixed() {
     let mut world = weightless();
@@ -344,7 +344,7 @@ fn a_material_changes_at_any_speed() {
     assert!(world.set_shape(shape, &def).is_err());
 }
 
-/// The target is dropped together with the velocity towards it.
+/// `disable` and `set_transform` drop the target of a body together with the velocity towards it.
 #[test]
 fn a_transform_replaces_a_target() {
     for disables in [false, true] {
@@ -364,7 +364,7 @@ fn a_transform_replaces_a_target() {
     }
 }
 
-/// Kept manifolds measure displacements modulo 1024 m.
+/// Cached manifolds measure displacements modulo 1024 m.
 #[test]
 fn a_body_moved_by_a_kilometre_leaves_its_contact() {
     let mut world = World::default();

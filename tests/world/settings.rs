@@ -209,8 +209,8 @@ fn settings_that_change_and_change_back_within_a_tick_leave_nothing_in_the_cache
     }
 }
 
-/// A kinematic body reaches its target in the next tick also if that tick has another length, with the velocity of this
-/// path.
+/// A kinematic body reaches its target in the next tick, even if the tick rate has changed. Its velocity fits the new
+/// length of the tick.
 #[test]
 fn a_target_is_reached_at_another_tick_rate() {
     for rate in [30u32, 120] {

@@ -12,7 +12,8 @@ fn place(world: &World, body: BodyId) -> Vec2<Fx> {
     world.body(body).expect("there").position()
 }
 
-/// An edit parts the lower of two boxes from the upper one and puts it to sleep in the same tick. The upper box falls.
+/// An edit parts the lower of two boxes from the upper one, and the lower box is put to sleep in the same tick. The
+/// upper box falls.
 #[test]
 fn a_body_that_an_edit_has_parted_from_others_sleeps_alone() {
     type Edit = fn(&mut World, BodyId, BodyId);
@@ -77,7 +78,8 @@ fn a_body_that_an_area_has_left_does_not_sleep_with_it() {
     assert!(fallen > fx!(4), "{fallen} m in a second");
 }
 
-/// A kinematic platform whose upper side is at height 0, with sleepers at x = -50 and 50, and a post that hangs from it.
+/// A kinematic platform whose upper side is at height 0, with sleeping bodies at x = -50 and 50, and a sleeping post
+/// that hangs from it.
 fn platform() -> (World, BodyId, [BodyId; 3]) {
     let mut world = World::default();
     let platform = BodyDef::kinematic().position((fx!(0), fx!(-0.5)));
@@ -136,7 +138,7 @@ fn a_platform_that_is_told_to_stay_lets_its_riders_sleep() {
     assert!(sleepers.iter().all(|id| !is_asleep(&world, *id)));
 }
 
-/// A kinematic bar turns by 90 degrees in a tick. Its path as the tangent at the start predicts it misses the box.
+/// A kinematic bar turns by 90 degrees in a tick. A path predicted along the tangent at the start misses the box.
 #[test]
 fn a_bar_wakes_what_it_reaches_in_its_last_moving_tick() {
     let mut world = weightless();
@@ -180,8 +182,8 @@ fn a_resting_sensor_notices_edits_of_fixed_shapes() {
     assert!(world.body(zone).is_some());
 }
 
-/// The ground changes at any time before or after a box on it falls asleep. In its first tick the box is slower than its
-/// sleep speed.
+/// The ground changes at any time before or after a box on it falls asleep. In the first tick after the change, the box
+/// is slower than its sleep speed.
 #[test]
 fn a_box_whose_ground_changes_slides() {
     let grounds: [(Fx, Material, Material); 2] = [

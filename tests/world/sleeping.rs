@@ -185,7 +185,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // Below the default sleep speed of 0.05 m/s.
+        // This speed is below the default sleep speed of 0.05 m/s.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
@@ -309,7 +309,7 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Each domino sleeps in its own island.
+/// Each box of the row sleeps in its own island.
 #[test]
 fn a_row_of_sleepers_wakes_in_one_tick() {
     let mut world = super::weightless();

@@ -7,7 +7,8 @@ use lockstep2d::world::{BodyPose, World};
 
 use super::{rectangle, run, spawn, square, weightless};
 
-/// Three rows of boxes that sleep one by one are hit at one end. Each round of waking reaches the next box of each row.
+/// Three rows of boxes, each box asleep in its own island, are hit at one end. Each round of waking reaches the next
+/// box of each row.
 #[test]
 fn rows_of_sleepers_wake_alike_after_a_restore() {
     let mut world = weightless();

@@ -20,7 +20,7 @@ fn radians(angle: Angle) -> f32 {
     angle.to_radians().to_num()
 }
 
-/// Builder of a body. Sleeping is disabled per body, because rapier2d has no such switch for the world.
+/// Builder of a body. Sleeping is disabled per body, because rapier2d cannot disable it for the whole world.
 pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyBuilder> {
     ensure!(matches!(def.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &def.settings;
@@ -152,12 +152,12 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
         .collision_groups(groups(&shape.filter)))
 }
 
-/// The lowest 4 of rapier2d's bits stand for categories. The other 28 stand for negative groups.
+/// The lowest 4 of the 32 bits of a rapier2d filter stand for categories. The other 28 stand for negative groups.
 const CATEGORY_BITS: u32 = 0xF;
 
 /// Filter in rapier2d, which has 32 categories and no group numbers. A negative group becomes one of 28 categories, in
-/// rotation. Such a category does not collide with itself, so ragdolls whose groups differ by a multiple of 28 pass
-/// through each other.
+/// rotation. Two shapes in one of these categories do not collide, so ragdolls whose groups differ by a multiple of 28
+/// pass through each other.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));
@@ -198,7 +198,7 @@ pub fn joint(def: &JointDef) -> Result<GenericJoint> {
             damping,
         );
     } else if let Some(motor) = hinge.motor {
-        // As in the other engines, the motor is limited only by its maximum torque.
+        // With this damping, only the maximum torque limits the motor, as in the other engines.
         joint = joint
             .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
             .motor_velocity(JointAxis::AngX, motor.speed.to_num(), 1e6)

@@ -82,7 +82,7 @@ pub fn frame(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> 
     })
 }
 
-/// Medians of the rounds. All rounds save the same ticks.
+/// Medians of the rounds. All rounds save the same ticks, so the saves have the same sizes in each round.
 fn saving(rounds: &[Round]) -> Saving {
     let of = |part: fn(&Saving) -> f64| {
         median(&rounds.iter().map(|round| part(&round.saving)).collect::<Vec<_>>())
@@ -94,8 +94,8 @@ fn saving(rounds: &[Round]) -> Saving {
     }
 }
 
-/// Measures frames. Slot 0 has the save before the first tick of a frame, and the other slots have those after its
-/// ticks. The time of saves and hashes is the difference between frames with and without them, because reading the
+/// Measures frames. Slot 0 has the save before the first tick of a frame, and each other slot has the save after a
+/// tick. The time of saves and hashes is the difference between frames with and without them, because reading the
 /// clock takes as long as saving a small world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);

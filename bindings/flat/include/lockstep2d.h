@@ -6,15 +6,17 @@
  * ls2d_last_error copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an
  * error, never undefined behaviour. ls2d_free frees objects of all kinds.
  *
- * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
- * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER,
- * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write the number needed
- * even then. ls2d_match_next_packet writes the size of the packet only if the buffer for the address is long enough.
+ * A pointer has to be null or to point to as many items as the function reads or writes. Nothing else may use that
+ * memory during the call. Functions that fill a buffer take its capacity in items. If the buffer is too short, such a
+ * function returns LS2D_BUFFER, and writes the number of items needed if it has a pointer for this number. There are
+ * two exceptions: ls2d_last_error cuts the text, and ls2d_match_next_packet writes the size of the packet only if the
+ * buffer for the address is long enough.
  *
- * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
+ * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The init function sets the size and the
+ * defaults.
  *
- * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
- * Different objects may be used on several threads at once. */
+ * Numbers are integers: ls2d_fx has 32 fraction bits, so that a length of LS2D_FX(1) is one metre. ls2d_angle is in
+ * units of 2^-32 turn. Several threads may use different objects at the same time. */
 #ifndef LOCKSTEP2D_H
 #define LOCKSTEP2D_H
 
@@ -30,9 +32,9 @@ typedef int32_t ls2d_status;
 /* Handle of an object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | refuses floats,
- * which the conversion to int64_t would truncate without an error. Both numbers are converted, because a division by an
- * unsigned one would be unsigned. */
+/* LS2D_FX converts a whole number to ls2d_fx. LS2D_FX_RATIO is the quotient of two whole numbers, rounded towards zero.
+ * With `| 0`, a float does not compile; without it, the conversion to int64_t would truncate the float silently. The
+ * denominator is converted as well, because a division by an unsigned number would be unsigned. */
 #define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / (int64_t)((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
@@ -50,7 +52,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_NULL 2
 /* A pointer is not aligned for its type. */
 #define LS2D_MISALIGNED 3
-/* No object has the handle: it was freed, or never existed. */
+/* No object has the handle: the object was freed, or never existed. */
 #define LS2D_HANDLE 4
 /* The handle belongs to an object of another kind. */
 #define LS2D_HANDLE_KIND 5
@@ -58,18 +60,19 @@ typedef uint32_t ls2d_handle;
 #define LS2D_SIZE 6
 /* An argument is out of its range, or the call is not possible at this time. */
 #define LS2D_VALUE 7
-/* The buffer is too short. The number of items needed was written, if the function has a pointer for it. */
+/* The buffer is too short. If the function has a pointer for the number of items, it has written the number
+ * needed. */
 #define LS2D_BUFFER 8
 /* A text is invalid, for example not UTF-8. */
 #define LS2D_TEXT 9
-/* A result has no value: division by zero, root of a negative number. */
+/* The result is undefined, as for a division by zero or the root of a negative number. */
 #define LS2D_NUMBER 10
-/* An error in the library. The objects of the call are unusable. */
+/* An internal error in the library. The objects that were passed to the call are unusable. */
 #define LS2D_INTERNAL 11
 /* An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed. */
 #define LS2D_BROKEN 12
-/* There are too many objects, or about 4 290 000 000 have been made and handles have run out.
- * `ls2d_world_save_into` saves without a new handle. */
+/* There are too many objects at a time, or the process has used up its supply of about 4 290 000 000 handles.
+ * `ls2d_world_save_into` saves a world without a new handle. */
 #define LS2D_EXHAUSTED 13
 /* The bytes are not a valid encoding of the expected value. */
 #define LS2D_DECODE 14
@@ -105,13 +108,13 @@ typedef uint32_t ls2d_handle;
 #define LS2D_JOINT_TO_ITSELF 34
 /* The bodies of a joint cannot be changed. */
 #define LS2D_JOINT_BODIES 35
-/* The joint has no such part. */
+/* The joint does not have the part to change, such as a motor. */
 #define LS2D_JOINT_PART 36
 /* A property of a joint is out of range, or its limits are reversed. */
 #define LS2D_JOINT 37
 /* A setting of the world or a property of an explosion is out of range. */
 #define LS2D_SETTING 38
-/* A limit of the world cannot be changed. */
+/* A limit of the world, such as `body_limit`, cannot be changed. */
 #define LS2D_FIXED_SETTING 39
 /* A name is not 1 to 16 ASCII letters, digits, `-` and `_`. */
 #define LS2D_NAME 40
@@ -119,27 +122,28 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FULL 41
 /* The kind of the body does not allow the change. */
 #define LS2D_WRONG_KIND 42
-/* The bytes are not a world of this version. */
+/* The bytes are not an encoded world of this version of the library. */
 #define LS2D_SNAPSHOT 50
 /* A replay cannot be recorded, opened or played further. */
 #define LS2D_RECORD 51
 /* A parameter of a match is out of its range. */
 #define LS2D_CONFIG 60
-/* The inputs do not have the expected number of bytes, or the input of an absent player is not zeros. */
+/* The inputs do not have the expected number of bytes, or the input of an absent player does not consist of zeros. */
 #define LS2D_INPUTS 61
 /* This peer does not take part in the match yet. */
 #define LS2D_NOT_IN_MATCH 62
 
-/* A number in units of 2^-32: 1 is 4294967296. */
+/* A fixed-point number in units of 2^-32: the integer 4294967296 stands for 1. */
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* Handle of a body of a world. The lowest 21 bits are the slot, the others count earlier bodies in that slot. A
- * handle is less than 2^53, so that a JavaScript number holds it exactly. Only `LS2D_NO_ID` is larger. */
+/* Handle of a body of a world. The lowest 21 bits are the slot. The other bits are the generation, which counts
+ * the earlier bodies in that slot. Handles of bodies are less than 2^53, so that a JavaScript number holds them
+ * exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger. */
 typedef uint64_t ls2d_body;
-/* Handle of a shape of a world, encoded like that of a body. */
+/* Handle of a shape of a world, encoded like `ls2d_body`. */
 typedef uint64_t ls2d_shape;
-/* Handle of a joint of a world, encoded like that of a body. */
+/* Handle of a joint of a world, encoded like `ls2d_body`. */
 typedef uint64_t ls2d_joint;
 
 /* Kind of a body: does not move. */
@@ -162,19 +166,20 @@ typedef uint64_t ls2d_joint;
 #define LS2D_BODY_MAY_SLEEP 32
 /* Flag of a body: its mass is given instead of computed from its shapes. */
 #define LS2D_BODY_GIVEN_MASS 64
-/* `ls2d_body_def.continuous`: swept against nothing. */
+/* `ls2d_body_def.continuous`: no continuous collision detection. */
 #define LS2D_SWEEP_OFF 0
-/* `ls2d_body_def.continuous`: swept against fixed bodies. */
+/* `ls2d_body_def.continuous`: the body is swept against fixed bodies. */
 #define LS2D_SWEEP_FIXED 1
-/* `ls2d_body_def.continuous`: swept against all bodies that are not bullets. */
+/* `ls2d_body_def.continuous`: the body is swept against all bodies except bullets. */
 #define LS2D_SWEEP_BULLET 2
-/* `ls2d_body_def.continuous`: swept against fixed and kinematic bodies. */
+/* `ls2d_body_def.continuous`: the body is swept against fixed and kinematic bodies. */
 #define LS2D_SWEEP_KINEMATIC 3
 /* `ls2d_mover_state.flags`: the character stands on ground. */
 #define LS2D_MOVER_ON_GROUND 1
-/* `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on. */
+/* `ls2d_mover_state.flags`, in results: the character is wedged between two slopes that are too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
-/* `ls2d_mover_state.flags`: inside a shape that is solid from one side, passing on until it is out of it. */
+/* `ls2d_mover_state.flags`: the character is inside a shape that is solid from one side only, and passes through
+ * until it has left the shape. */
 #define LS2D_MOVER_PASSING 4
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
@@ -186,21 +191,21 @@ typedef uint64_t ls2d_joint;
 #define LS2D_CONTACT_BAUMGARTE 1
 /* Kind of a joint: a hinge. */
 #define LS2D_REVOLUTE 0
-/* Kind of a joint: B slides along the x axis of A's frame and does not turn. */
+/* Kind of a joint: B slides along the x axis of the joint's frame on A, and does not turn. */
 #define LS2D_PRISMATIC 1
 /* Kind of a joint: a rod, a rope or a spring between the anchors. */
 #define LS2D_DISTANCE 2
 /* Kind of a joint: B keeps its pose relative to A, rigidly or by springs. */
 #define LS2D_WELD 3
-/* Kind of a joint: B slides along the x axis of A's frame and turns. */
+/* Kind of a joint: B slides along the x axis of the joint's frame on A, and turns. */
 #define LS2D_WHEEL 4
 /* Kind of a joint: B is driven relative to A with limited force. */
 #define LS2D_MOTOR 5
-/* Kind of a joint: the bodies do not collide with each other. */
+/* Kind of a joint: only keeps the bodies from colliding with each other. */
 #define LS2D_FILTER 6
 /* Kind of a joint: the wheels about the anchors turn in a fixed ratio, as gears. */
 #define LS2D_GEAR 7
-/* Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame. */
+/* Kind of a joint: the wheel about A's anchor rolls along the x axis of the joint's frame on B. */
 #define LS2D_RACK 8
 /* Kind of a joint: a rope over two wheels that are fixed in the world. */
 #define LS2D_PULLEY 9
@@ -210,7 +215,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_ENABLED 2
 /* Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel). */
 #define LS2D_JOINT_LIMIT 4
-/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; motor, for the angle). */
+/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; for the angle: motor). */
 #define LS2D_JOINT_MOTOR 8
 /* Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
  * wheel). */
@@ -245,9 +250,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MALFORMED 4
 /* Verdict: the file exceeds one of the limits. */
 #define LS2D_LIMIT_EXCEEDED 5
-/* Verdict: recorded with another version of the engine, or other rules. */
+/* Verdict: the file was recorded with another version of the engine, or with other rules. */
 #define LS2D_UNVERIFIABLE 6
-/* Request: keep a copy of the state before `tick`. It replaces an older one for the same tick. */
+/* Request: keep a copy of the state before `tick`. The copy replaces an older copy for the same tick. */
 #define LS2D_REQUEST_SAVE 0
 /* Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed. */
 #define LS2D_REQUEST_LOAD 1
@@ -267,7 +272,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_SEATED 2
 /* Event: `peer` loses `seat` at `tick`. */
 #define LS2D_EVENT_UNSEATED 3
-/* Event: play stalls for inputs of `peer`. `value` is 1 if that peer is heard, directly or through others. */
+/* Event: play stalls, because inputs of `peer` are missing. `value` is 1 if messages of this peer still arrive,
+ * directly or through other peers; otherwise 0. */
 #define LS2D_EVENT_WAITING 4
 /* Event: play continues. */
 #define LS2D_EVENT_RESUMED 5
@@ -275,26 +281,27 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_PAUSE 6
 /* Event: the match ends after `tick` ticks. */
 #define LS2D_EVENT_END 7
-/* Event: after `tick` ticks, `peer` has a different state, with the hashes `ours` and `theirs`. */
+/* Event: after `tick` ticks, the state of `peer` has the hash `theirs`, and the state of this peer the hash
+ * `ours`. */
 #define LS2D_EVENT_DESYNC 8
 /* Event: `peer` has issued two different inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the other peers may have dropped inputs that this peer lacks. This peer has to join again. */
+/* Event: this peer is so far behind that the others may have dropped inputs that it lacks. It has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
 /* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
-/* Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
- * Restore that state before the next request. */
+/* Event: the state after `tick` ticks was downloaded. `value` is the handle of its bytes, which the caller frees.
+ * Restore this state before you fulfil the next request. */
 #define LS2D_EVENT_STATE 12
-/* Event: the downloaded bytes are not a valid state; they are requested again. */
+/* Event: the downloaded bytes are not a valid state. This peer requests the state again. */
 #define LS2D_EVENT_BAD_STATE 13
 /* Reason: the offers differ. */
 #define LS2D_REFUSED_OFFER 0
 /* Reason: too many peers are joining through this contact. */
 #define LS2D_REFUSED_FULL 1
-/* Reason: another peer has the number of this peer. */
+/* Reason: another peer already has the `peer` number of this peer. */
 #define LS2D_REFUSED_TAKEN 2
-/* Reason: the contact is not in a match yet. The request is repeated. */
+/* Reason: the contact is not in a match yet. This peer repeats its request. */
 #define LS2D_REFUSED_NOT_READY 3
 /* Status: follows the match and requests a seat. */
 #define LS2D_MATCH_JOINING 0
@@ -304,7 +311,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
-/* Status: hears no majority of the peers, directly or through others. */
+/* Status: no messages of a majority of the peers arrive, directly or through other peers. */
 #define LS2D_MATCH_PAUSED 4
 /* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
@@ -322,11 +329,12 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_CONNECTING 11
 /* `ls2d_query_filter.flags`: the query sees sensors. */
 #define LS2D_QUERY_SENSORS 1
-/* Rays report shapes that they start in. Casts report those into which they would move deeper. */
+/* `ls2d_query_filter.initial_overlap`: a ray reports shapes that it starts in. A cast reports such a shape only if
+ * it would move deeper into the shape. */
 #define LS2D_OVERLAP_RESIST 0
-/* Rays and casts report shapes that they start in. */
+/* `ls2d_query_filter.initial_overlap`: rays and casts report shapes that they start in. */
 #define LS2D_OVERLAP_REPORT 1
-/* Rays and casts do not see shapes that they start in. */
+/* `ls2d_query_filter.initial_overlap`: rays and casts do not see shapes that they start in. */
 #define LS2D_OVERLAP_IGNORE 2
 /* Kind of a shape: a disc with `radius`. */
 #define LS2D_CIRCLE 0
@@ -336,8 +344,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_POLYGON 2
 /* Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`. */
 #define LS2D_CAPSULE 3
-/* Kind of a shape: a link of a chain from `points[0]` to `points[1]`, made by `ls2d_chain_links`. The far ends of
- * its neighbours are `points[2]` and `points[3]`. */
+/* Kind of a shape: a link of a chain, made by `ls2d_chain_links`. It is a line from `points[0]` to `points[1]`.
+ * The far ends of the links before and after it are `points[2]` and `points[3]`. */
 #define LS2D_LINK 4
 /* Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`. */
 #define LS2D_HULL 5
@@ -345,7 +353,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_RECTANGLE 6
 /* Flag of a shape: detects overlaps, and does not collide. */
 #define LS2D_SHAPE_SENSOR 1
-/* Flag of a shape: other shapes pass in the direction `one_way`. */
+/* Flag of a shape: other shapes pass through it in the direction `one_way`. */
 #define LS2D_SHAPE_ONE_WAY 2
 /* Flag of a shape: has its own `restitution_threshold`. */
 #define LS2D_SHAPE_RESTITUTION_THRESHOLD 4
@@ -353,9 +361,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_AREA 8
 /* Flag of a shape: the area attracts bodies to its centre. */
 #define LS2D_SHAPE_ATTRACTION 16
-/* Flag of a shape: reports contacts. */
+/* Flag of a shape: contact events include this shape. */
 #define LS2D_SHAPE_CONTACT_EVENTS 32
-/* Flag of a shape: reports hits. */
+/* Flag of a shape: hit events include this shape. */
 #define LS2D_SHAPE_HIT_EVENTS 64
 /* Flag of a shape: sensors detect it. */
 #define LS2D_SHAPE_SENSOR_EVENTS 128
@@ -367,7 +375,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_AFTER 1024
 /* Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing: the mean. If two shapes have different rules, the one with the larger number applies. */
+/* Rule of mixing, for the values of two shapes: the mean. If the shapes have different rules, the rule with the
+ * larger number applies. */
 #define LS2D_MIX_AVERAGE 0
 /* Rule of mixing: the square root of the product. */
 #define LS2D_MIX_GEOMETRIC_MEAN 1
@@ -379,9 +388,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MIX_MAXIMUM 4
 /* Attraction that is constant beyond `attraction_radius`. */
 #define LS2D_FALLOFF_CONSTANT 0
-/* Attraction that decreases with the distance beyond `attraction_radius`. */
+/* Attraction that is in inverse proportion to the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE 1
-/* Attraction that decreases with the square of the distance beyond `attraction_radius`. */
+/* Attraction that is in inverse proportion to the square of the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE_SQUARE 2
 
 /* A point or a vector. */
@@ -400,7 +409,7 @@ typedef struct ls2d_hash {
     uint64_t high;
 } ls2d_hash;
 
-/* A random number generator, to be kept in the state of a game. */
+/* A random number generator, which a game keeps as part of its state. */
 typedef struct ls2d_rng {
     /* State of the generator. */
     uint64_t state;
@@ -416,9 +425,9 @@ typedef struct ls2d_config {
     uint32_t tick_rate;
     /* Gravity in m/s². */
     ls2d_vec2 gravity;
-    /* Sub-steps of a tick. */
+    /* Number of sub-steps of a tick. */
     uint32_t sub_steps;
-    /* Iterations of a sub-step. */
+    /* Number of solver iterations of a sub-step. */
     uint32_t iterations;
     /* `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`. */
     uint32_t contact;
@@ -438,7 +447,8 @@ typedef struct ls2d_config {
     ls2d_fx restitution_threshold;
     /* Largest speed of a body in m/s. */
     ls2d_fx speed_max;
-    /* Distance in metres within which shapes get contact points. It is larger for shapes that approach each other. */
+    /* Distance in metres within which shapes get contact points before they touch. The distance is larger for
+     * shapes that approach each other. */
     ls2d_fx speculative_distance;
     /* Largest margin in metres of the bounding boxes in the broad phase. */
     ls2d_fx fat_margin;
@@ -450,7 +460,7 @@ typedef struct ls2d_config {
     uint32_t shape_limit;
     /* Largest number of joints. */
     uint32_t joint_limit;
-    /* Largest number of pairs of near shapes. */
+    /* Largest number of pairs of shapes with overlapping fat AABBs in a tick. Further pairs are left out. */
     uint32_t pair_limit;
 } ls2d_config;
 
@@ -474,11 +484,11 @@ typedef struct ls2d_body_def {
     ls2d_vec2 velocity;
     /* Angular velocity in rad/s, counter-clockwise. */
     ls2d_fx angular_velocity;
-    /* Mass in kg, with `LS2D_BODY_GIVEN_MASS`. */
+    /* Mass in kg. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_fx mass;
-    /* Centre of mass in the body's frame in metres, with `LS2D_BODY_GIVEN_MASS`. */
+    /* Centre of mass in the body's frame, in metres. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_vec2 mass_centre;
-    /* Radius of gyration in metres, with `LS2D_BODY_GIVEN_MASS`. */
+    /* Radius of gyration in metres. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_fx mass_gyration;
     /* Decay rate of the velocity, per second. */
     ls2d_fx linear_damping;
@@ -488,9 +498,9 @@ typedef struct ls2d_body_def {
     ls2d_fx gravity_scale;
     /* Speed in m/s below which the body becomes ready to sleep. */
     ls2d_fx sleep_speed;
-    /* A number for the game. */
+    /* A number that the game may choose freely. */
     uint64_t user_data;
-    /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros; empty for none. */
+    /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros. All zeros for no name. */
     uint8_t name[16];
 } ls2d_body_def;
 
@@ -508,7 +518,7 @@ typedef struct ls2d_body_info {
     uint32_t shapes;
     /* Velocity of the centre of mass in m/s. */
     ls2d_vec2 velocity;
-    /* Angular velocity in rad/s. */
+    /* Angular velocity in rad/s, counter-clockwise. */
     ls2d_fx angular_velocity;
     /* Centre of mass in the world, in metres. */
     ls2d_vec2 centre;
@@ -516,17 +526,17 @@ typedef struct ls2d_body_info {
     ls2d_fx mass;
     /* Moment of inertia about the centre of mass in kg m². */
     ls2d_fx inertia;
-    /* The number that the game stores with the body. */
+    /* The number that the game has stored with the body. */
     uint64_t user_data;
     /* Decay rate of the velocity, per second. */
     ls2d_fx linear_damping;
     /* Decay rate of the angular velocity, per second. */
     ls2d_fx angular_damping;
-    /* Factor on gravity. */
+    /* Factor on the world's gravity. */
     ls2d_fx gravity_scale;
     /* Speed in m/s below which the body becomes ready to sleep. */
     ls2d_fx sleep_speed;
-    /* An `LS2D_SWEEP_` constant. */
+    /* `LS2D_SWEEP_OFF` and so on. */
     uint32_t continuous;
     /* Reserved: 0. */
     uint32_t reserved;
@@ -584,7 +594,8 @@ typedef struct ls2d_shape_def {
     ls2d_fx friction;
     /* Fraction of the approach speed that a bounce returns. */
     ls2d_fx restitution;
-    /* Approach speed in m/s below which the shape does not bounce, with `LS2D_SHAPE_RESTITUTION_THRESHOLD`. */
+    /* Approach speed in m/s below which the shape does not bounce. Read only with
+     * `LS2D_SHAPE_RESTITUTION_THRESHOLD`. */
     ls2d_fx restitution_threshold;
     /* Rolling resistance of a round shape, as a fraction of its radius. */
     ls2d_fx rolling_resistance;
@@ -594,24 +605,24 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Two shapes with an equal group always collide if the group is positive, never if it is negative. 0 is no
-     * group. */
+    /* Two shapes with the same positive group always collide, two shapes with the same negative group never. 0 is
+     * no group. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
     /* `LS2D_MIX_AVERAGE` and so on, for restitution. */
     uint32_t restitution_mixing;
-    /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
+    /* Direction in the body's frame in which other shapes pass through. Read only with `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
-    /* Acceleration in m/s² of bodies in the area, along the axes of the area's body. */
+    /* Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body. */
     ls2d_vec2 area_acceleration;
-    /* Force in N per m² of the covered part of a body, along the axes of the area's body. */
+    /* Force in N per m² of the part of a body that is in the area, along the axes of the area's body. */
     ls2d_vec2 area_force;
-    /* Velocity of the medium in m/s in the frame of the area's body. */
+    /* Velocity of the medium relative to the area's body in m/s, along the axes of this body. */
     ls2d_vec2 area_flow;
-    /* Rate per second at which velocities approach that of the medium. */
+    /* Rate per second at which the velocity of a body in the area approaches the velocity of the medium. */
     ls2d_fx area_linear_drag;
-    /* Rate per second at which angular velocities approach that of the medium. */
+    /* Rate per second at which the angular velocity of a body in the area approaches that of the area's body. */
     ls2d_fx area_angular_drag;
     /* Density of the medium in kg/m², for buoyancy. */
     ls2d_fx area_density;
@@ -623,12 +634,12 @@ typedef struct ls2d_shape_def {
     uint32_t attraction_falloff;
     /* Reserved: 0. */
     uint32_t reserved;
-    /* A number for the game. */
+    /* A number that the game may choose freely. */
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
- * only with that flag, except that a pulley always reads `length`. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. If the comment of a flag names a field, the
+ * field is read only with this flag. There is one exception: a pulley always reads `length`. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -640,9 +651,9 @@ typedef struct ls2d_joint_def {
     int32_t teeth_a;
     /* Teeth of B's wheel of a gear. */
     int32_t teeth_b;
-    /* Angle of the joint's frame in A's frame. */
+    /* Angle of the joint's frame on A, in the frame of body A. */
     ls2d_angle angle_a;
-    /* Angle of the joint's frame in B's frame. */
+    /* Angle of the joint's frame on B, in the frame of body B. */
     ls2d_angle angle_b;
     /* Reserved: 0. */
     uint32_t reserved;
@@ -650,23 +661,23 @@ typedef struct ls2d_joint_def {
     ls2d_body body_a;
     /* Body B. */
     ls2d_body body_b;
-    /* Anchor in A's frame in metres. */
+    /* Anchor in the frame of body A, in metres. */
     ls2d_vec2 anchor_a;
-    /* Anchor in B's frame in metres. */
+    /* Anchor in the frame of body B, in metres. */
     ls2d_vec2 anchor_b;
-    /* Lower end of the range, in rad or m. */
+    /* Lower limit: of the angle in rad (revolute), or of the translation or length in m. */
     ls2d_fx limit_lower;
-    /* Upper end of the range, in rad or m. */
+    /* Upper limit, in the unit of the lower one. */
     ls2d_fx limit_upper;
-    /* Target speed in rad/s or m/s. */
+    /* Target speed of the motor: in rad/s (revolute, wheel, motor), or m/s (prismatic, distance). */
     ls2d_fx motor_speed;
-    /* Largest torque in N m or force in N. */
+    /* Largest torque of the motor in N m, or largest force in N. */
     ls2d_fx motor_max;
     /* Frequency of the spring in Hz. */
     ls2d_fx spring_hertz;
     /* Damping ratio of the spring. */
     ls2d_fx spring_damping_ratio;
-    /* Rest position of the spring, in rad or m. */
+    /* Rest position of the spring: in rad (revolute), or m. */
     ls2d_fx spring_target;
     /* Smallest force of the spring in N. */
     ls2d_fx spring_force_lower;
@@ -682,9 +693,9 @@ typedef struct ls2d_joint_def {
     ls2d_fx threshold_force;
     /* Torque in N m beyond which the joint is reported or breaks. */
     ls2d_fx threshold_torque;
-    /* Target velocity of a motor joint in m/s. */
+    /* Target velocity of B's anchor relative to A along the axes of the world, in m/s (motor joint). */
     ls2d_vec2 linear_velocity;
-    /* Largest driving force of a motor joint in N. */
+    /* Largest force in N for `linear_velocity` (motor joint). */
     ls2d_fx linear_motor_max;
     /* Frequency in Hz of the spring between the anchors. */
     ls2d_fx linear_hertz;
@@ -706,11 +717,11 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 wheel_b;
     /* Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`. */
     ls2d_fx ratio;
-    /* A number for the game. */
+    /* A number that the game may choose freely. */
     uint64_t user_data;
 } ls2d_joint_def;
 
-/* Selects the shapes that a query sees. Null stands for the defaults of `ls2d_query_filter_init`. */
+/* Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`. */
 typedef struct ls2d_query_filter {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -718,7 +729,7 @@ typedef struct ls2d_query_filter {
     uint32_t flags;
     /* `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in. */
     uint32_t initial_overlap;
-    /* Number of bodies that the query does not see, at most 8. */
+    /* Number of bodies in `except`, at most 8. */
     uint32_t except_count;
     /* Categories that the query belongs to. */
     uint64_t category;
@@ -734,7 +745,7 @@ typedef struct ls2d_ray_hit {
     ls2d_shape shape;
     /* Body of that shape. */
     ls2d_body body;
-    /* Fraction of the translation, 0 to 1. */
+    /* Fraction of the translation at the hit, 0 to 1. */
     ls2d_fx fraction;
     /* Point in the world, in metres. */
     ls2d_vec2 point;
@@ -744,17 +755,17 @@ typedef struct ls2d_ray_hit {
     uint64_t starts_inside;
 } ls2d_ray_hit;
 
-/* Hit of a moving shape. */
+/* Hit of a moving probe. */
 typedef struct ls2d_cast_hit {
-    /* The shape that is met. */
+    /* The shape that the probe meets. */
     ls2d_shape shape;
     /* Body of that shape. */
     ls2d_body body;
-    /* Fraction of the translation, 0 to 1. */
+    /* Fraction of the translation at the hit, 0 to 1. */
     ls2d_fx fraction;
-    /* Displacement up to the hit, in metres. */
+    /* Displacement of the probe up to the hit, in metres. */
     ls2d_vec2 travelled;
-    /* Point on the surface that is met, in the world, in metres. */
+    /* Point on the surface of that shape, in the world, in metres. */
     ls2d_vec2 point;
     /* Outward normal of the surface at that point. */
     ls2d_vec2 normal;
@@ -768,7 +779,7 @@ typedef struct ls2d_closest_point {
     ls2d_shape shape;
     /* Body of that shape. */
     ls2d_body body;
-    /* Distance in metres; negative inside. */
+    /* Distance in metres, negative if the given point is inside the shape. */
     ls2d_fx distance;
     /* Point on the surface, in the world, in metres. */
     ls2d_vec2 point;
@@ -804,7 +815,7 @@ typedef struct ls2d_mover {
     ls2d_angle slope_max;
     /* Height in metres of steps that the character climbs without a jump. */
     ls2d_fx step_height;
-    /* Distance in metres by which ground may descend within a tick while the character follows it. */
+    /* Largest descent of the ground within a tick, in metres, that the character follows. */
     ls2d_fx snap_distance;
     /* Geometry of the character; other fields of the definition have no effect. */
     ls2d_shape_def shape;
@@ -816,7 +827,7 @@ typedef struct ls2d_mover_plane {
     ls2d_shape shape;
     /* Body of that shape. */
     ls2d_body body;
-    /* Position of the body's origin at that time, in metres. */
+    /* Position of the body's origin when the character met the surface, in the world, in metres. */
     ls2d_vec2 body_position;
     /* Velocity of the surface in m/s. */
     ls2d_vec2 velocity;
@@ -826,13 +837,13 @@ typedef struct ls2d_mover_plane {
     ls2d_vec2 point;
     /* Distance of the character from the surface in metres, negative if they overlap. */
     ls2d_fx separation;
-    /* Rotation of the body at that time. */
+    /* Rotation of the body when the character met the surface. */
     ls2d_angle body_angle;
     /* Reserved: 0. */
     uint32_t reserved;
 } ls2d_mover_plane;
 
-/* State of a character, to be kept by the game. `ls2d_mover_state_init` sets the first state. */
+/* State of a character, which the game stores. `ls2d_mover_state_init` sets the first state. */
 typedef struct ls2d_mover_state {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -842,7 +853,7 @@ typedef struct ls2d_mover_state {
     ls2d_vec2 position;
     /* Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     ls2d_vec2 velocity;
-    /* The ground, with `LS2D_MOVER_ON_GROUND`; otherwise zeros. */
+    /* With `LS2D_MOVER_ON_GROUND`, the ground on which the character stands; otherwise zeros. */
     ls2d_mover_plane ground;
 } ls2d_mover_state;
 
@@ -876,7 +887,7 @@ typedef struct ls2d_sensor_event {
     ls2d_shape sensor;
     /* The shape that overlaps the sensor. */
     ls2d_shape visitor;
-    /* Time within the tick at which the overlap began or ceased, 0 to 1. */
+    /* Time at which the overlap began or ceased, as a fraction of the tick from 0 to 1. */
     ls2d_fx fraction;
 } ls2d_sensor_event;
 
@@ -886,7 +897,7 @@ typedef struct ls2d_joint_event {
     ls2d_joint joint;
     /* Force on body B in N. */
     ls2d_vec2 force;
-    /* Torque in N m on body B about its anchor. */
+    /* Torque in N m on body B about B's anchor. */
     ls2d_fx torque;
     /* 1 if the joint broke, otherwise 0. */
     uint64_t broke;
@@ -904,7 +915,7 @@ typedef struct ls2d_limits {
     uint32_t setup_bytes;
     /* Largest number of players. */
     uint32_t players;
-    /* Largest number of bytes of a block. */
+    /* Largest number of bytes of a block, which has the inputs between two checkpoints. */
     uint32_t block_bytes;
     /* Largest number of ticks between checkpoints. */
     uint32_t block_ticks;
@@ -912,7 +923,7 @@ typedef struct ls2d_limits {
     uint64_t ticks;
     /* Largest number of bodies of the world. */
     uint64_t bodies;
-    /* Largest number of work units of a tick. */
+    /* Largest number of work units of a tick. A unit takes about a microsecond or less. */
     uint64_t tick_work;
     /* Largest number of work units of the game. */
     uint64_t total_work;
@@ -939,7 +950,7 @@ typedef struct ls2d_match_config {
     uint32_t seats;
     /* Number of seats that this peer plays; 0 for a spectator or a dedicated server. */
     uint32_t own_seats;
-    /* Number of seats that have to be taken before the first tick. That of the host counts. */
+    /* Number of seats that have to be taken before the first tick. Seats of the host count. */
     uint32_t start_with;
     /* Bytes of an input, 1 to 512. */
     uint32_t input_bytes;
@@ -955,23 +966,24 @@ typedef struct ls2d_match_config {
     uint32_t save_interval;
     /* Interval in ticks at which states are compared: a multiple of `save_interval`. */
     uint32_t check_interval;
-    /* Number of ticks that may be played beyond the last final one. */
+    /* Number of ticks that may be played beyond the last final tick. */
     uint32_t history;
     /* Minimum number of final ticks whose inputs are kept. */
     uint32_t log_ticks;
-    /* Number of ticks from the agreement that a peer joins to its first tick, in addition to three round trips. */
+    /* Number of ticks between the agreement that a peer joins and its first tick, in addition to three round
+     * trips. */
     uint32_t seat_lead;
-    /* A peer that lags by at most this many ticks may have a seat. */
+    /* A peer may get a seat if it lags by at most this many ticks. */
     uint32_t seat_within;
     /* Random number of this peer, new for each process. */
     uint32_t peer;
     /* Tag of the match: packets with another tag are ignored. */
     uint64_t match_tag;
-    /* Time in microseconds for which play stalls for a missing peer before the others go on. */
+    /* Time in microseconds for which the other peers wait for a missing peer before they go on without it. */
     uint64_t patience;
-    /* Identity of the player: a peer that joins with the same key gets its seat back, if that is free. */
+    /* Identity of the player: a peer that joins with the same key gets its seat back, if the seat is free. */
     uint64_t key;
-    /* Secret random numbers, against packets with forged addresses. */
+    /* Secret random numbers that protect against packets with forged addresses. */
     uint64_t secret[2];
 } ls2d_match_config;
 
@@ -1009,14 +1021,14 @@ typedef struct ls2d_match_event {
 
 /* ---- The library ---- */
 
-/* Version of this API, to be equal to `LS2D_API_VERSION` of the header. */
+/* Version of the API in the library. It has to equal `LS2D_API_VERSION` of the header. */
 uint32_t ls2d_api_version(void);
 
 /* Version of the engine's arithmetic: programs with different versions compute different states. */
 uint32_t ls2d_semantics(void);
 
-/* Copies the text of the last failure or verdict on this thread as UTF-8 without a final zero, cut to the buffer.
- * Writes the length of the whole text in bytes. */
+/* Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
+ * too short, the text is cut. `length` is the length of the whole text in bytes. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Every later use of its handle is an error. */
@@ -1034,9 +1046,9 @@ ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 /* Makes a bytes object with a copy of some bytes. */
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
-/* Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
- * cannot allocate memory. Each thread has one such buffer. A call with a larger size may move the buffer, but
- * keeps its contents. */
+/* A buffer for callers that cannot allocate memory themselves, such as JavaScript. Returns the address of `size`
+ * bytes with an alignment of 8, or 0 if there is not enough memory. Each thread has one such buffer. A call with a
+ * larger size may move the buffer, but keeps its contents. */
 size_t ls2d_scratch(size_t size);
 
 /* ---- Worlds ---- */
@@ -1044,9 +1056,10 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Adapts sub-steps and contact stiffness so that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a
- * box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative distance to a fiftieth of
- * `size`, but not below 1 mm. Set gravity and the tick rate before. */
+/* Copies the settings `from` to `config`, adapted to small boxes. The sub-steps and the contact stiffness are such
+ * that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a box, with at most 64 sub-steps per tick
+ * and 4000 per second. The speculative distance is reduced to a fiftieth of `size`, but not below 1 mm. Set
+ * gravity and the tick rate before this call. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1058,27 +1071,29 @@ ls2d_status ls2d_world_clone(uint32_t world, uint32_t *copy);
 /* Advances a world by one tick. */
 ls2d_status ls2d_world_step(uint32_t world);
 
-/* Advances a world by some ticks, and keeps the events of the last one. */
+/* Advances a world by a number of ticks. Afterwards, the event functions return the events of the last tick. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state. Equal settings, edits and ticks in the same order give equal hashes on every machine. */
+/* Hash of the state of a world. Equal settings, edits and ticks in the same order give equal hashes on every
+ * machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
-/* Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
- * 5 islands, 6 random numbers. */
+/* Hash of one section of the state. `section` is 0 (settings, tick and fault count), 1 (bodies), 2 (shapes), 3
+ * (joints), 4 (contacts), 5 (islands), or 6 (random number generator). */
 ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash);
 
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of clamped results of the solver since the world was made, plus one for every tick in which `pair_limit`
- * left pairs out. A body at the speed limit does not count. */
+/* Number of results that the solver has clamped to their range since the world was made, plus one for every tick
+ * with more pairs than `pair_limit`. Limiting a body to the largest speed does not count. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */
 ls2d_status ls2d_world_config(uint32_t world, ls2d_config *config);
 
-/* Numbers of bodies, shapes, joints, awake bodies, and pairs of near shapes. Null pointers are not written. */
+/* Numbers of bodies, shapes, joints, awake bodies, and pairs of shapes with overlapping fat AABBs. Each pointer
+ * may be null. */
 ls2d_status ls2d_world_counts(uint32_t world, size_t *bodies, size_t *shapes, size_t *joints, size_t *awake, size_t *pairs);
 
 /* Draws a number of 32 bits from the world's generator, which is part of the state. */
@@ -1090,7 +1105,7 @@ ls2d_status ls2d_world_random_below(uint32_t world, uint32_t bound, uint32_t *nu
 /* Draws a uniform number from `low` to below `high` from the world's generator. */
 ls2d_status ls2d_world_random_range(uint32_t world, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
-/* Drops the caches of a world, which does not change its hash. */
+/* Rebuilds the caches of a world. Its hash does not change. There are no events until the next tick. */
 ls2d_status ls2d_world_clear_scratch(uint32_t world);
 
 /* ---- Definitions ---- */
@@ -1105,12 +1120,12 @@ ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
- * first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
- * those of `base`, whose geometry does not matter. */
+ * first. If `one_sided` is not 0, the chain is solid only from the right, looking along the points. The links take
+ * all other properties from `base`, whose geometry is ignored. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
-/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Null
- * pointers are not written. At least one shape must have both an area and a density. */
+/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Each
+ * pointer to a result may be null. At least one shape must have both an area and a density. */
 ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
 
 /* ---- Edits of a world, or of a list of commands ---- */
@@ -1127,45 +1142,46 @@ ls2d_status ls2d_commands_count(uint32_t commands, size_t *count);
 /* Encodes a list of commands as bytes. */
 ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
 
-/* Replaces a list of commands by an encoded one, which may come from any source. */
+/* Replaces the contents of a list of commands by an encoded list, which may come from any source. */
 ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
 
-/* Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`,
- * unless that pointer is null. */
+/* Executes a list of commands in order. Skips commands that the world refuses, and writes their number to
+ * `refused`, unless this pointer is null. */
 ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
 
-/* Adds a body with its shapes. The body's handle is written, unless the pointer is null or the target is a list. */
+/* Adds a body with its shapes. Writes the body's handle to `id`, unless `id` is null or the target is a list. */
 ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
 
-/* Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
- * definition once. The fields `body` and `flags` of the poses are not read. The handles are written, unless the
- * pointer is null or the target is a list. */
+/* Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
+ * A recording stores the definition only once. The fields `body` and `flags` of the poses are not read. Writes the
+ * handles of the bodies to `ids`, unless `ids` is null or the target is a list. */
 ls2d_status ls2d_spawn_each(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, const ls2d_pose *poses, size_t pose_count, ls2d_body *ids, size_t capacity);
 
 /* Removes a body with its shapes and joints. */
 ls2d_status ls2d_despawn(uint32_t target, ls2d_body body);
 
-/* Adds a shape to a body. The shape's handle is written, unless the pointer is null or the target is a list. */
+/* Adds a shape to a body. Writes the shape's handle to `id`, unless `id` is null or the target is a list. */
 ls2d_status ls2d_add_shape(uint32_t target, ls2d_body body, const ls2d_shape_def *shape, ls2d_shape *id);
 
 /* Removes a shape. */
 ls2d_status ls2d_remove_shape(uint32_t target, ls2d_shape shape);
 
-/* Changes a shape. */
+/* Replaces the definition of a shape. */
 ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_def *def);
 
-/* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
+/* Adds a joint. Writes the joint's handle to `id`, unless `id` is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
 
-/* Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. A
- * recording stores the definition once. `ends` has the two bodies of each joint in turn. The handles are written,
- * unless the pointer is null or the target is a list. */
+/* Adds a joint between each pair of bodies, all with one definition. If the world refuses one of the joints, it
+ * adds none of them. A recording stores the definition only once. `ends` contains body A and body B of the first
+ * joint, then those of the second joint, and so on; `end_count` is the number of bodies. Writes the handles of the
+ * joints to `ids`, unless `ids` is null or the target is a list. */
 ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
 ls2d_status ls2d_remove_joint(uint32_t target, ls2d_joint joint);
 
-/* Changes a joint, but not its bodies. */
+/* Replaces the definition of a joint. The bodies of the joint cannot be changed. */
 ls2d_status ls2d_set_joint(uint32_t target, ls2d_joint joint, const ls2d_joint_def *def);
 
 /* Enables a joint. */
@@ -1192,23 +1208,24 @@ ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_f
 /* Sets the position of a body's origin in metres, and its angle. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Moves a kinematic body to a pose during the next tick. */
+/* Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect. */
+/* Sets all settings of a body: damping, gravity scale, locks, continuous collision detection, sleep. The other
+ * fields of `def` have no effect. */
 ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Changes the kind of a body. */
 ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
 
-/* Sets the mass of a body: from the definition if it has `LS2D_BODY_GIVEN_MASS`, otherwise from the body's shapes.
- * Other fields of the definition have no effect. */
+/* Sets the mass of a body. If `def` has `LS2D_BODY_GIVEN_MASS`, its three mass fields are used, otherwise the mass
+ * of the body's shapes. The other fields of `def` have no effect. */
 ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Sets the number that the game stores with a body. */
 ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_data);
 
-/* Sets the name of a body. A length of 0 removes it. */
+/* Sets the name of a body. A length of 0 removes the name. */
 ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
 
 /* Lets a body take part in the simulation. */
@@ -1226,14 +1243,15 @@ ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 /* Sets the gravity in m/s². */
 ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
 
-/* Replaces the settings of a world. Refused as a whole if a limit differs from that of the world. A recording
- * refuses another tick rate as well. */
+/* Replaces the settings of a world. If a limit differs from the limit in the world, all settings are refused. A
+ * recording also refuses a different tick rate. */
 ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
 
-/* Applies impulses away from a point. */
+/* Applies the impulses of an explosion to dynamic bodies, away from its centre, and wakes these bodies. */
 ls2d_status ls2d_explode(uint32_t target, const ls2d_explosion *explosion);
 
-/* Sets the defaults of an explosion at a point: radius and falloff of 1 m, all categories. */
+/* Sets the defaults of an explosion: radius and falloff of 1 m, all categories. The centre is a point of the world
+ * in metres. `impulse` is in N s per metre of the width of a shape. */
 ls2d_status ls2d_explosion_init(ls2d_fx x, ls2d_fx y, ls2d_fx impulse, ls2d_explosion *explosion);
 
 /* ---- Contents of a world ---- */
@@ -1256,13 +1274,13 @@ ls2d_status ls2d_body_joints(uint32_t world, ls2d_body id, ls2d_joint *joints, s
 /* Name of a body: 16 bytes, padded with zeros. */
 ls2d_status ls2d_body_name(uint32_t world, ls2d_body id, uint8_t *name);
 
-/* Velocity in m/s of a body at a point of the world. */
+/* Velocity in m/s of a body at a point of the world in metres. */
 ls2d_status ls2d_body_velocity_at(uint32_t world, ls2d_body id, ls2d_fx x, ls2d_fx y, ls2d_vec2 *velocity);
 
-/* Definition of a shape, and handle of its body. Null pointers are not written. */
+/* Definition of a shape, and handle of its body. Each pointer to a result may be null. */
 ls2d_status ls2d_shape_get(uint32_t world, ls2d_shape id, ls2d_shape_def *def, ls2d_body *owner);
 
-/* An axis-aligned box around a shape, with a margin. */
+/* The fat AABB of a shape: its axis-aligned bounding box in the world with a margin, in metres. */
 ls2d_status ls2d_shape_box(uint32_t world, ls2d_shape id, ls2d_aabb *area);
 
 /* Shapes that a sensor overlaps, in slot order. */
@@ -1277,20 +1295,21 @@ ls2d_status ls2d_joint_get(uint32_t world, ls2d_joint id, ls2d_joint_def *def);
 /* The anchors of a joint in the world, in metres. */
 ls2d_status ls2d_joint_anchors(uint32_t world, ls2d_joint id, ls2d_vec2 *a, ls2d_vec2 *b);
 
-/* Angle of a joint in rad, including whole turns. */
+/* Angle of the joint's frame on B relative to its frame on A in rad, counter-clockwise, including whole turns. */
 ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 
-/* Force in N of a joint on body B in the last sub-step, and torque in N m about B's anchor. */
+/* Force in N that a joint exerted on body B in the last sub-step, and torque in N m about B's anchor. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Copies a definition, with anchors and angles for the current poses: both anchors are at a point of the world,
- * the axis has a direction in the world (zero: the x axis). A gear, rack or pulley gets no position error. */
+/* Copies the definition of a joint, with anchors and angles for the current poses of its bodies. Both anchors are
+ * at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction `axis` in the
+ * world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no position error. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
 
-/* Poses of all enabled bodies in slot order, for drawing, five numbers each: handle, x, y, angle in rad, and 1 if
- * awake, otherwise 0. `capacity` and `count` are numbers of `double`s. */
+/* Poses of all enabled bodies in slot order, for drawing. A pose has five numbers: handle, x and y in metres,
+ * angle in rad, and 1 if the body is awake, otherwise 0. `capacity` and `count` are numbers of `double`s. */
 ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_t *count);
 
 /* ---- Events of the last tick ---- */
@@ -1304,8 +1323,8 @@ ls2d_status ls2d_events_contact_begin(uint32_t world, ls2d_contact_event *events
 /* Pairs of shapes that ceased to touch, sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
 
-/* Pairs of shapes that hit each other, if one of them has `LS2D_SHAPE_HIT_EVENTS`, sorted by shape A, then by
- * shape B. */
+/* Pairs of shapes that hit each other at the world's `hit_speed` or faster, if one of them has
+ * `LS2D_SHAPE_HIT_EVENTS`. Sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
 /* Shapes that began to overlap a sensor, sorted by `fraction`. */
@@ -1319,19 +1338,21 @@ ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t 
 
 /* ---- Queries ---- */
 
-/* Sets the defaults of a query, which does not see sensors. */
+/* Sets the defaults of a query filter, with which a query sees all shapes except sensors. */
 ls2d_status ls2d_query_filter_init(ls2d_query_filter *filter);
 
-/* Sets the defaults of a probe with a shape of the given kind, at the origin. */
+/* Sets the defaults of a probe with a shape of the given kind, at the origin. The caller sets the geometry. */
 ls2d_status ls2d_probe_init(uint32_t kind, ls2d_probe *probe);
 
-/* The first shape that a ray meets on a translation in metres from a point. `LS2D_NONE` without a hit. */
+/* The first shape that a ray meets. The ray starts at the point (`x`, `y`) of the world and has the length and
+ * direction of the vector (`along_x`, `along_y`), in metres. `LS2D_NONE` if there is no hit. */
 ls2d_status ls2d_cast_ray(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hit);
 
-/* Every shape that a ray meets, in order along the ray. */
+/* Every shape that a ray meets, in order along the ray. The ray is given as in `ls2d_cast_ray`. */
 ls2d_status ls2d_cast_ray_all(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hits, size_t capacity, size_t *count);
 
-/* The first shape that a probe meets on a translation in metres. `LS2D_NONE` without a hit. */
+/* The first shape that a probe meets when it moves by the vector (`along_x`, `along_y`), in metres. `LS2D_NONE` if
+ * there is no hit. */
 ls2d_status ls2d_cast_shape(uint32_t world, const ls2d_probe *probe, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_cast_hit *hit);
 
 /* Shapes that overlap a probe, in slot order. */
@@ -1343,11 +1364,11 @@ ls2d_status ls2d_overlap_box(uint32_t world, const ls2d_aabb *area, const ls2d_q
 /* Shapes that contain a point, in slot order. */
 ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
 
-/* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
+/* The shape nearest to a point of the world in metres. `LS2D_NONE` if no shape is within `within` metres. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
-/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is disabled or not in the
- * world. */
+/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one of the shapes is disabled or
+ * not in the world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
 
 /* ---- Characters ---- */
@@ -1360,19 +1381,19 @@ ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
 
 /* Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
- * the velocity. `from` and `state` may point to the same struct. The surfaces met are written to `met` in order.
- * If that buffer is too short, the state is written nevertheless. */
+ * the velocity. `from` and `state` may point to the same struct. Writes the new state to `state`, and the surfaces
+ * that the character meets to `met`, in order. If `met` is too short, the state is written nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
 
-/* Saves a world in memory. */
+/* Saves the state of a world into a new snapshot. */
 ls2d_status ls2d_world_save(uint32_t world, uint32_t *snapshot);
 
 /* Saves a world into an existing snapshot, whose memory is reused. */
 ls2d_status ls2d_world_save_into(uint32_t world, uint32_t snapshot);
 
-/* Restores a saved state. */
+/* Restores a world to a saved state. */
 ls2d_status ls2d_world_restore(uint32_t world, uint32_t snapshot);
 
 /* Hash of a saved state. */
@@ -1386,44 +1407,44 @@ ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world)
 
 /* ---- Replays of worlds ---- */
 
-/* Sets the default limits of a replay, which allow a day of play at 60 ticks per second. A file made to be slow
- * can take hours to verify. */
+/* Sets the default limits of a replay, which allow a day of play at 60 ticks per second. With these limits, a
+ * malicious file can take hours to verify: a server should set narrower limits. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
 /* Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
  * `config` stands for the default settings. */
 ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
 
-/* Executes and empties a list of commands, and advances the recorded world by one tick. Refused commands are
- * skipped. */
+/* Executes and empties a list of commands, and advances the recorded world by one tick. Skips commands that the
+ * world refuses. */
 ls2d_status ls2d_recording_step(uint32_t recording, uint32_t commands);
 
 /* Makes a copy of the recorded world, to draw and query it. */
 ls2d_status ls2d_recording_world(uint32_t recording, uint32_t *world);
 
-/* Takes the finished bytes, to be appended to the file. */
+/* Returns the bytes finished since the last call, which the caller appends to the file. */
 ls2d_status ls2d_recording_take(uint32_t recording, uint32_t *bytes);
 
 /* Ends a recording, and returns the remaining bytes. */
 ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
 
-/* Verifies a replay of a world from any source. A null `limits` stands for the default limits. `ls2d_last_error`
- * returns the verdict in words. */
+/* Verifies a replay of a world, which may come from any source. A null `limits` stands for the default limits.
+ * `ls2d_last_error` returns the verdict in words. */
 ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limits *limits, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of worlds ---- */
 
-/* Opens a replay of a world from any source, to go to any of its ticks. Tick t is the state after t ticks. A null
- * `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
- * is `LS2D_RECORD`. */
+/* Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
+ * t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
+ * and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
 
-/* The current tick, and the number of ticks. Null pointers are not written. */
+/* The current tick, and the number of ticks. Each pointer may be null. */
 ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
 
-/* Goes to a tick. If the replay cannot be played up to it (a checkpoint differs, inputs are not valid, or a limit
- * is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to the
- * tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable. */
+/* Goes to a tick. If the replay cannot be played up to this tick (a checkpoint differs, inputs are not valid, or a
+ * limit is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to
+ * the tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable. */
 ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
 
 /* Goes forward by a tick. `LS2D_NONE` at the end. */
@@ -1442,19 +1463,19 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
  * `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
-/* Records the final inputs of the next tick, all players in order. `absent` has a bit for each absent player,
- * whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash after
- * this tick. */
+/* Records the final inputs of the next tick, those of all players in order. `absent` has a bit for each absent
+ * player, whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
+ * after this tick. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
 /* Passes the hash of the state after the last recorded tick. The call has no effect if no checkpoint is due. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 
-/* Takes the finished bytes, to be appended to the file. */
+/* Returns the bytes finished since the last call, which the caller appends to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
 /* Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
- * 256 results with different names. They can be read without playing the replay. */
+ * 256 results with different names. The results can be read without playing the replay. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
 /* Ends a replay with the hash of the last state, and returns the remaining bytes. */
@@ -1462,18 +1483,19 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
 
 /* ---- Replays of games with rules of their own ---- */
 
-/* Opens a replay of a game with its own rules, from any source. If it cannot be played, its verdict is written,
- * the handle is 0, and the result is `LS2D_RECORD`. */
+/* Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
+ * verdict is written, the handle is 0, and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as a bytes object, and numbers that describe the replay. Pointers except `rules` may be null. */
+/* Name of the rules as a bytes object, and numbers that describe the replay. All pointers except `rules` may be
+ * null. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* Name (a bytes object) and number of a result that the file states. Results are in ascending order of names. They
- * are true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+/* Name (a bytes object) and number of a result in the file, such as a score. Results are in ascending order of
+ * their names, and are verified only if the verdict is `LS2D_MATCH`. `LS2D_NONE` if there are no more results. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
 /* The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
@@ -1484,21 +1506,22 @@ ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, 
  * while seeking, for each `LS2D_REQUEST_CHECKSUM`. */
 ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
 
-/* Adds a result of the game that was played. `ls2d_replay_verdict` compares the results with those in the file. */
+/* Adds a result of the game that the host has simulated. `ls2d_replay_verdict` compares the results with those in
+ * the file. */
 ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
-/* The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state. */
+/* The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
 ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of games with rules of their own ---- */
 
-/* Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
- * returns requests. Before the first request, the game has to be in its first state. */
+/* Starts seeking to the state after `tick` ticks. `ls2d_replay_next_request` then returns the requests that lead
+ * to this state. Before the first request, the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
-/* The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
- * `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
- * `LS2D_RECORD` if the game has diverged from the file at that tick or before. */
+/* The next request of a seek: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
+ * `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick of `ls2d_replay_seek`
+ * is reached. `LS2D_RECORD` if the game has diverged from the file at or before this tick. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
 /* Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
@@ -1507,86 +1530,86 @@ ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 
-/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
- * start once two seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers. */
+/* Sets the defaults of a match: lockstep at 60 ticks per second, inputs of one byte, and a start as soon as two
+ * seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
-/* Opens a match. All peers pass the same `offer`, for example versions, rules and setup, of at most 512 bytes. */
+/* Opens a match. `offer` is data of at most 512 bytes that all peers have to agree on, such as rules and setup. */
 ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, uint32_t *handle);
 
 /* Joins a match through the participant at the address `contact`, as a spectator if `own_seats` is 0. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
-/* Sends the request to join to the participant at the address `contact`. */
+/* Requests to join a match through the participant at the address `contact`. Discards a match in progress. */
 ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
 
-/* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
+/* Processes a packet that arrived from the address `from`. `now` is a time in microseconds that never decreases. */
 ls2d_status ls2d_match_receive(uint32_t handle, uint64_t now, const uint8_t *from, size_t from_size, const uint8_t *packet, size_t size);
 
 /* Advances the match to the time `now`. Call it every few milliseconds and after packets have arrived. */
 ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 
-/* Writes 1 if `ls2d_match_advance` is due, otherwise 0. */
+/* Writes 1 if `ls2d_match_advance` has to be called now, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
- * then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
- * again. Inputs that were issued count for one tick: forget key presses then. While the input delay grows,
- * `ls2d_match_is_due` remains 1, and further calls ask for the inputs of the additional ticks before a tick is
- * played. Without own seats, `size` is 0. */
+/* Issues the inputs of this peer's seats, in order of the seats, and plays a tick if possible: the next requests
+ * then contain `LS2D_REQUEST_ADVANCE`. Writes 1 to `issued` if the inputs were issued; otherwise the same inputs
+ * may be passed again. Issued inputs count for one tick, so clear recorded key presses then. While the input delay
+ * grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of one more tick before the next
+ * tick is played. For a peer without seats, `size` is 0. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
-/* The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`, the
- * inputs of all seats are written to the buffer. `LS2D_NONE` if there is none. */
+/* The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`,
+ * writes the inputs of all seats to `inputs`. `LS2D_NONE` if there is no request. */
 ls2d_status ls2d_match_next_request(uint32_t handle, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
 /* Passes the hash that `LS2D_REQUEST_CHECKSUM` requests. */
 ls2d_status ls2d_match_report_hash(uint32_t handle, uint32_t tick, const ls2d_hash *hash);
 
 /* The next packet, of at most 1200 bytes, and its destination, an address of at most 32 bytes. `LS2D_NONE` if
- * there is none. */
+ * there is no packet. */
 ls2d_status ls2d_match_next_packet(uint32_t handle, uint8_t *to, size_t to_capacity, size_t *to_size, uint8_t *packet, size_t capacity, size_t *size);
 
-/* The next event. `LS2D_NONE` if there is none. */
+/* The next event. `LS2D_NONE` if there is no event. */
 ls2d_status ls2d_match_next_event(uint32_t handle, ls2d_match_event *event);
 
 /* Writes 1 if a joining peer waits for its initial state, otherwise 0. */
 ls2d_status ls2d_match_wants_state(uint32_t handle, uint32_t *wants);
 
-/* Offers the state after a number of final ticks to peers that join. */
+/* Offers the encoded state after `tick` final ticks to peers that join. */
 ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t *state, size_t size);
 
 /* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
 /* Numbers of ticks: `played` ticks were played, `last` ticks have final inputs, and `confirmed` ticks were played
- * with final inputs. Null pointers are not written. */
+ * with final inputs. Each pointer may be null. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
 /* Writes the bit mask of this peer's own seats. */
 ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
 
-/* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final or not kept. */
+/* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet or no longer stored. */
 ls2d_status ls2d_match_final_inputs(uint32_t handle, uint32_t tick, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
-/* Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
- * loss in thousandths. Null pointers are not written. */
+/* Delay of this peer's inputs in ticks. For the link to `peer`: smoothed round-trip time in microseconds, and loss
+ * in thousandths. Each pointer may be null. `LS2D_NONE` if there is no such peer. */
 ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uint64_t *round_trip, uint32_t *loss);
 
-/* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
+/* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`, to inform the other peers. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+/* Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
  * majority has decided on the end, other peers can get seats. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Requests a pause, or, with 0, withdraws the request. */
+/* Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
 /* Votes for going on without a missing peer. */
 ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
 
-/* Votes for removing the player with this key, while this peer has a vote. */
+/* Votes for removing the player with this key. The vote counts only while this peer is a voter. */
 ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
 
 /* Sets the number of ticks that may be played with guessed inputs; 0 is lockstep. */
@@ -1597,7 +1620,7 @@ ls2d_status ls2d_match_set_guess(uint32_t handle, uint32_t ticks);
 /* Reads a decimal number such as `-1.25`, rounded to nearest. */
 ls2d_status ls2d_fx_parse(const uint8_t *text, size_t length, ls2d_fx *number);
 
-/* Writes a number as exact decimal text, and the length of the text. */
+/* Writes a number as exact decimal text, and the length of the text in bytes. */
 ls2d_status ls2d_fx_format(ls2d_fx number, uint8_t *text, size_t capacity, size_t *length);
 
 /* `numerator / denominator`, rounded to nearest, saturating. `LS2D_NUMBER` if `denominator` is 0. */
@@ -1642,10 +1665,10 @@ ls2d_fx ls2d_angle_cos(ls2d_angle angle);
 /* Angle of a vector from the x axis; 0 for the zero vector. */
 ls2d_angle ls2d_angle_of(ls2d_fx x, ls2d_fx y);
 
-/* An angle of a number of degrees. */
+/* The angle of a number of degrees. */
 ls2d_angle ls2d_angle_from_degrees(ls2d_fx degrees);
 
-/* An angle of a number of radians. */
+/* The angle of a number of radians. */
 ls2d_angle ls2d_angle_from_radians(ls2d_fx radians);
 
 /* Degrees of an angle, above -180 and up to 180. */
@@ -1654,7 +1677,7 @@ ls2d_fx ls2d_angle_to_degrees(ls2d_angle angle);
 /* Radians of an angle, above -pi and up to pi. */
 ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 
-/* Makes a random number generator, to be kept in the state of the game. */
+/* Makes a random number generator, which the game keeps as part of its state. */
 ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
 
 /* Draws a uniform number below `bound`; 0 if `bound` is 0. `from` is the generator before the draw, `rng` the

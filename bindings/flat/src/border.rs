@@ -1,8 +1,8 @@
-//! Access to the memory of callers. No other module dereferences their pointers.
+//! Access to the memory of callers. No other module dereferences pointers of callers.
 //!
-//! An [`In`] or [`Out`] comes from a Rust reference or from a foreign caller. A foreign caller guarantees that the
-//! pointer is null or points to as many items as the function reads or writes, and that nothing else accesses them
-//! during the call. Null pointers, alignment and counts are checked.
+//! An [`In`] or [`Out`] comes from a Rust reference, or from a caller in another language. Such a caller guarantees
+//! that the pointer is null or points to as many items as the function reads or writes, and that nothing else accesses
+//! these items during the call. This module checks for null pointers, alignment and counts.
 
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -142,7 +142,7 @@ impl<'a, T: Plain> Out<'a, T> {
         check(self.0)
     }
 
-    /// Checks the pointer of a result that is lost if it is null.
+    /// Checks the pointer of an optional result, for which the caller may pass a null pointer.
     pub(crate) fn check_if_wanted(&self) -> Outcome {
         if self.0.is_null() { Ok(()) } else { self.check() }
     }
@@ -174,8 +174,8 @@ impl<'a, T: Plain> Out<'a, T> {
             return Ok(());
         }
         check(self.0)?;
-        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, not of this library, and at
-        // most `capacity` are written.
+        // SAFETY: not null and aligned; the caller promises memory for `capacity` items that does not belong to this
+        // library, and at most `capacity` items are written.
         unsafe { std::ptr::copy_nonoverlapping(items.as_ptr(), self.0, items.len()) };
         Ok(())
     }

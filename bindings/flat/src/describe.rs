@@ -1,4 +1,4 @@
-//! Description of the API, from which the header and the layouts for other languages are written.
+//! Description of the API, from which the C header and the struct layouts for other languages are generated.
 
 /// A constant.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,8 @@ pub(crate) struct Struct {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parameter {
     pub(crate) name: &'static str,
-    /// Type in C: text before the base type, base type, text after it, such as `const `, `ls2d_vec2`, ` *`.
+    /// Type in C, in three parts: the text before the base type, the base type and the text after it, such as `const `,
+    /// `ls2d_vec2` and ` *`.
     pub(crate) kind: [&'static str; 3],
 }
 
@@ -59,7 +60,7 @@ pub(crate) struct Function {
 pub(crate) trait CType {
     /// Type of the value, or of the items that it points to.
     const BASE: &'static str;
-    /// Text before and after the type.
+    /// Text before and after `BASE`.
     const AROUND: [&'static str; 2] = ["", ""];
     /// Number of items of an array.
     const COUNT: Option<usize> = None;
@@ -138,7 +139,7 @@ macro_rules! constants {
     };
 }
 
-/// Defines structs that C and Rust share, and their descriptions. A struct with gaps does not compile.
+/// Defines structs that C and Rust share, and their descriptions. A struct with padding does not compile.
 macro_rules! records {
     ($($(#[doc = $doc:literal])+ struct $name:ident = $c:literal {
         $($(#[doc = $field_doc:literal])+ $field:ident: $type:ty,)+
@@ -153,7 +154,7 @@ macro_rules! records {
 
             const _: () = assert!(size_of::<$name>() == 0 $(+ size_of::<$type>())+, "a struct has gaps");
 
-            // SAFETY: its fields are plain, and there are no gaps.
+            // SAFETY: its fields are plain, and there is no padding between them.
             unsafe impl $crate::border::Plain for $name where $($type: $crate::border::Plain),+ {}
 
             impl $crate::describe::CType for $name {
@@ -189,7 +190,7 @@ macro_rules! api {
             docs: &[$($doc),+],
         }),+];
 
-        /// Calls with arguments drawn from bytes.
+        /// For each function, a call whose arguments are drawn from the input of a `Caller`.
         #[cfg(any(test, feature = "fuzzing"))]
         pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
             $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*

@@ -1,4 +1,4 @@
-//! Calls all functions with arguments drawn from bytes, often wrong ones.
+//! Calls random functions of the API with arguments drawn from input bytes. Many of these arguments are invalid.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
@@ -12,11 +12,11 @@ const ITEMS: usize = 64;
 /// Number of bytes in a buffer of bytes.
 const BYTES: usize = 4096;
 
-/// Number of objects and of ids that a caller remembers.
+/// Number of handles of objects that a `Caller` remembers, and number of ids of bodies, shapes and joints.
 const REMEMBERED: usize = 12;
 
-/// Names of parameters that are handles. A handle from an output is mostly passed to parameters with the name of that
-/// output. The output `copy` counts as `world`, and the outputs `rules` and `name` count as `bytes`.
+/// Names of parameters that are handles. A `Caller` passes a handle from an output mostly to parameters that have the
+/// name of this output. The output `copy` counts as `world`, and the outputs `rules` and `name` count as `bytes`.
 const HANDLES: [&str; 11] = [
     "world",
     "target",
@@ -40,7 +40,7 @@ struct Buffer {
     words: Box<[u64]>,
 }
 
-/// A caller with the results of its earlier calls.
+/// A simulated user of the API, with the results of its earlier calls.
 #[derive(Debug)]
 pub struct Caller<'a> {
     input: std::slice::Iter<'a, u8>,
@@ -58,7 +58,7 @@ pub struct Caller<'a> {
 /// end.
 ///
 /// # Panics
-/// If a call has failed in the library itself.
+/// If a call returns the code of an internal error.
 #[must_use]
 pub fn run(input: &[u8]) -> (Vec<i32>, Vec<u64>) {
     let calls: Vec<_> = DRAWN.iter().copied().flatten().collect();
@@ -82,7 +82,7 @@ fn hash(world: u32) -> Option<u64> {
     (crate::ls2d_world_hash(world, Out::of(&mut hash)) == 0).then_some(hash.low)
 }
 
-/// The kind of object of a parameter; `None` if it is no handle.
+/// The kind of object that a parameter refers to; `None` if the parameter is not a handle.
 fn family(name: &str) -> Option<&'static str> {
     let name = match name {
         "copy" => "world",
@@ -139,8 +139,9 @@ impl Caller<'_> {
         known.unwrap_or_else(|| self.word())
     }
 
-    /// Draws memory for items of `item` bytes, with zeros or an earlier output. Up to three words of an input are
-    /// changed. Returns the address, and 1 for a misaligned pointer; `None` for a null pointer.
+    /// Draws memory for items of `item` bytes, filled with zeros or with an earlier output. Changes up to three words
+    /// of an input. Returns the address, and the number of bytes to add to it: 1 for a misaligned pointer. Returns
+    /// `None` for a null pointer.
     fn buffer(&mut self, name: &str, item: usize, is_output: bool) -> Option<(*mut u64, usize)> {
         self.items = if item == 1 { BYTES } else { ITEMS };
         let kind = self.byte();
@@ -151,7 +152,7 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // Most calls read about the first two items.
+                // Changes only words of about the first two items, because most calls read no more.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;
@@ -254,7 +255,7 @@ pub(crate) trait Returned {
     /// The status code; `None` for a function that returns a value.
     fn code(self) -> Option<i32>;
 
-    /// Records a status code.
+    /// Records a status code. Panics if the call has failed with an internal error.
     fn check(self, caller: &mut Caller<'_>, name: &str)
     where
         Self: Sized,

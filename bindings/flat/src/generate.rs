@@ -16,15 +16,17 @@ const OPENING: &str = "\
  * ls2d_last_error copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an
  * error, never undefined behaviour. ls2d_free frees objects of all kinds.
  *
- * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
- * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER,
- * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write the number needed
- * even then. ls2d_match_next_packet writes the size of the packet only if the buffer for the address is long enough.
+ * A pointer has to be null or to point to as many items as the function reads or writes. Nothing else may use that
+ * memory during the call. Functions that fill a buffer take its capacity in items. If the buffer is too short, such a
+ * function returns LS2D_BUFFER, and writes the number of items needed if it has a pointer for this number. There are
+ * two exceptions: ls2d_last_error cuts the text, and ls2d_match_next_packet writes the size of the packet only if the
+ * buffer for the address is long enough.
  *
- * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
+ * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The init function sets the size and the
+ * defaults.
  *
- * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
- * Different objects may be used on several threads at once. */
+ * Numbers are integers: ls2d_fx has 32 fraction bits, so that a length of LS2D_FX(1) is one metre. ls2d_angle is in
+ * units of 2^-32 turn. Several threads may use different objects at the same time. */
 #ifndef LOCKSTEP2D_H
 #define LOCKSTEP2D_H
 
@@ -40,9 +42,9 @@ typedef int32_t ls2d_status;
 /* Handle of an object. */
 typedef uint32_t ls2d_handle;
 
-/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. The operator | refuses floats,
- * which the conversion to int64_t would truncate without an error. Both numbers are converted, because a division by an
- * unsigned one would be unsigned. */
+/* LS2D_FX converts a whole number to ls2d_fx. LS2D_FX_RATIO is the quotient of two whole numbers, rounded towards zero.
+ * With `| 0`, a float does not compile; without it, the conversion to int64_t would truncate the float silently. The
+ * denominator is converted as well, because a division by an unsigned number would be unsigned. */
 #define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / (int64_t)((denominator) | 0)))
 /* An angle of whole degrees, rounded towards zero. */
@@ -137,7 +139,7 @@ pub fn header() -> String {
     text
 }
 
-/// The text of `layout.js`: constants, and size and fields of every struct.
+/// The text of `layout.js`: all constants, and the size and the fields of every struct.
 #[must_use]
 pub fn layout() -> String {
     let mut text = String::from(

@@ -9,16 +9,17 @@ use crate::describe::{aliases, records};
 use crate::status::{Failure, Outcome, Status};
 
 aliases! {
-    /// A number in units of 2^-32: 1 is 4294967296.
+    /// A fixed-point number in units of 2^-32: the integer 4294967296 stands for 1.
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// Handle of a body of a world. The lowest 21 bits are the slot, the others count earlier bodies in that slot. A
-    /// handle is less than 2^53, so that a JavaScript number holds it exactly. Only `LS2D_NO_ID` is larger.
+    /// Handle of a body of a world. The lowest 21 bits are the slot. The other bits are the generation, which counts
+    /// the earlier bodies in that slot. Handles of bodies are less than 2^53, so that a JavaScript number holds them
+    /// exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger.
     RawBody(u64) = "ls2d_body";
-    /// Handle of a shape of a world, encoded like that of a body.
+    /// Handle of a shape of a world, encoded like `ls2d_body`.
     RawShape(u64) = "ls2d_shape";
-    /// Handle of a joint of a world, encoded like that of a body.
+    /// Handle of a joint of a world, encoded like `ls2d_body`.
     RawJoint(u64) = "ls2d_joint";
 }
 
@@ -39,7 +40,7 @@ records! {
         high: u64,
     }
 
-    /// A random number generator, to be kept in the state of a game.
+    /// A random number generator, which a game keeps as part of its state.
     struct RawRng = "ls2d_rng" {
         /// State of the generator.
         state: u64,
@@ -115,7 +116,7 @@ fn pack(index: u32, generation: u32) -> u64 {
     u64::from(generation) << SLOT_BITS | u64::from(index)
 }
 
-/// The canonical bytes of a handle; `None` for a number that is no handle.
+/// The canonical encoding of a handle; `None` if the number is not a handle.
 fn unpack(packed: u64) -> Option<[u8; 8]> {
     let index = u32::try_from(packed & ((1 << SLOT_BITS) - 1)).ok()?;
     let generation = u32::try_from(packed >> SLOT_BITS).ok()?;
@@ -129,7 +130,7 @@ fn unpack(packed: u64) -> Option<[u8; 8]> {
 macro_rules! identifiers {
     ($($raw:ident, $id:ident, $status:ident, $what:literal;)+) => {
         $(impl $raw {
-            /// A number that is no handle is reported as stale.
+            /// For a number that is not a handle, returns the error of a stale handle.
             pub(crate) fn id(self) -> Outcome<$id> {
                 let stale = || Failure::new(Status::$status, concat!($what, " does not exist"));
                 let bytes = unpack(self.0).ok_or_else(stale)?;

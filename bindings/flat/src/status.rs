@@ -9,7 +9,7 @@ use lockstep2d::replay::RecordError;
 use lockstep2d::session::{ConfigError, InputSize};
 use lockstep2d::world::SnapshotError;
 
-/// Defines codes, C names and texts.
+/// Defines the status codes, with their names in C and their descriptions.
 macro_rules! statuses {
     ($($(#[doc = $doc:literal])+ $name:ident = $code:literal, $constant:literal;)+) => {
         /// Result of a function.
@@ -32,7 +32,7 @@ statuses! {
     Null = 2, "LS2D_NULL";
     /// A pointer is not aligned for its type.
     Misaligned = 3, "LS2D_MISALIGNED";
-    /// No object has the handle: it was freed, or never existed.
+    /// No object has the handle: the object was freed, or never existed.
     Handle = 4, "LS2D_HANDLE";
     /// The handle belongs to an object of another kind.
     HandleKind = 5, "LS2D_HANDLE_KIND";
@@ -40,18 +40,19 @@ statuses! {
     Size = 6, "LS2D_SIZE";
     /// An argument is out of its range, or the call is not possible at this time.
     Value = 7, "LS2D_VALUE";
-    /// The buffer is too short. The number of items needed was written, if the function has a pointer for it.
+    /// The buffer is too short. If the function has a pointer for the number of items, it has written the number
+    /// needed.
     Buffer = 8, "LS2D_BUFFER";
     /// A text is invalid, for example not UTF-8.
     Text = 9, "LS2D_TEXT";
-    /// A result has no value: division by zero, root of a negative number.
+    /// The result is undefined, as for a division by zero or the root of a negative number.
     Number = 10, "LS2D_NUMBER";
-    /// An error in the library. The objects of the call are unusable.
+    /// An internal error in the library. The objects that were passed to the call are unusable.
     Internal = 11, "LS2D_INTERNAL";
     /// An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed.
     Broken = 12, "LS2D_BROKEN";
-    /// There are too many objects, or about 4 290 000 000 have been made and handles have run out.
-    /// `ls2d_world_save_into` saves without a new handle.
+    /// There are too many objects at a time, or the process has used up its supply of about 4 290 000 000 handles.
+    /// `ls2d_world_save_into` saves a world without a new handle.
     Exhausted = 13, "LS2D_EXHAUSTED";
     /// The bytes are not a valid encoding of the expected value.
     Decode = 14, "LS2D_DECODE";
@@ -87,13 +88,13 @@ statuses! {
     JointToItself = 34, "LS2D_JOINT_TO_ITSELF";
     /// The bodies of a joint cannot be changed.
     JointBodies = 35, "LS2D_JOINT_BODIES";
-    /// The joint has no such part.
+    /// The joint does not have the part to change, such as a motor.
     JointPart = 36, "LS2D_JOINT_PART";
     /// A property of a joint is out of range, or its limits are reversed.
     Joint = 37, "LS2D_JOINT";
     /// A setting of the world or a property of an explosion is out of range.
     Setting = 38, "LS2D_SETTING";
-    /// A limit of the world cannot be changed.
+    /// A limit of the world, such as `body_limit`, cannot be changed.
     FixedSetting = 39, "LS2D_FIXED_SETTING";
     /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
     Name = 40, "LS2D_NAME";
@@ -101,13 +102,13 @@ statuses! {
     Full = 41, "LS2D_FULL";
     /// The kind of the body does not allow the change.
     WrongKind = 42, "LS2D_WRONG_KIND";
-    /// The bytes are not a world of this version.
+    /// The bytes are not an encoded world of this version of the library.
     Snapshot = 50, "LS2D_SNAPSHOT";
     /// A replay cannot be recorded, opened or played further.
     Record = 51, "LS2D_RECORD";
     /// A parameter of a match is out of its range.
     Config = 60, "LS2D_CONFIG";
-    /// The inputs do not have the expected number of bytes, or the input of an absent player is not zeros.
+    /// The inputs do not have the expected number of bytes, or the input of an absent player does not consist of zeros.
     Inputs = 61, "LS2D_INPUTS";
     /// This peer does not take part in the match yet.
     NotInMatch = 62, "LS2D_NOT_IN_MATCH";

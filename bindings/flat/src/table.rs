@@ -1,7 +1,7 @@
 //! Table of objects.
 //!
-//! A handle consists of a slot and a generation, which counts the objects of the slot. A slot without generations left
-//! is not reused, so that a stale handle never refers to another object.
+//! A handle consists of a slot and a generation, which counts the objects that the slot has had. A slot is not reused
+//! after its last generation. A stale handle therefore never refers to another object.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -56,7 +56,7 @@ pub(crate) trait Kind: Sized {
 
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 
-/// Edits, to be executed later.
+/// A list of commands that a world executes later.
 pub(crate) struct Commands(pub(crate) Vec<Command>);
 
 kinds! {
@@ -193,7 +193,7 @@ fn remove(handle: u32) -> Outcome<Shared> {
 
 /// Frees an object. If a call on another thread still uses the object, that call frees the memory at its end.
 pub(crate) fn free(handle: u32) -> Outcome {
-    // Dropped after the table is unlocked.
+    // The object is dropped here, because `remove` has unlocked the table again.
     remove(handle).map(drop)
 }
 

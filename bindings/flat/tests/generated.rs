@@ -1,4 +1,4 @@
-//! The committed header and layout match the API. `LOCKSTEP2D_WRITE=1` writes them.
+//! The committed header and layout match the API. With `LOCKSTEP2D_WRITE=1`, these tests write both files.
 
 use std::path::Path;
 

@@ -4,8 +4,8 @@
 //     node steps.mjs A.wasm B.wasm ...     builds of the module
 //
 // In each round, every engine or build runs in a new process. For each tick, the shortest time over the rounds counts,
-// because load on the machine makes ticks longer. Figures are means over the ticks, with their ratio to the first
-// column. ROUNDS is 5 by default. The hashes of a scene have to be equal in all rounds and builds.
+// because load on the machine makes ticks longer. Figures are means over the ticks, and in brackets the ratio to the
+// first column. ROUNDS is 5 by default. The hashes of a scene have to be equal in all rounds and builds.
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 import { ENGINES, measure, moduleOf } from "./engines.mjs";

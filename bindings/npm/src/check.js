@@ -1,4 +1,4 @@
-// Checks of arguments, which name the argument in an error with the code VALUE.
+// Checks of arguments. A check that fails throws an error with the code VALUE and the name of the argument.
 import { Lockstep2dError } from "./error.js";
 
 const U32_MAX = 0xffffffff;
@@ -7,7 +7,8 @@ export function fail(message) {
     throw new Lockstep2dError("VALUE", message);
 }
 
-/** Refuses an argument that is missing: `write` would skip it, and the function would read old memory or a default. */
+/** Throws if an argument is missing: `write` would skip the field, and the library would read old memory or a
+ * default. */
 export const given = (value, what) => (value === undefined ? fail(`${what} is missing`) : value);
 
 /** Formats a value for the text of an error. */
@@ -53,7 +54,7 @@ export function object(value, what) {
     return value;
 }
 
-/** Returns a copy, in which holes are undefined: `forEach` skips holes. */
+/** Returns a copy of an array with `undefined` in place of holes, because `forEach` would skip holes. */
 export function array(value, what) {
     return Array.isArray(value) ? Array.from(value) : fail(`${what} is an array, and not ${shown(value)}`);
 }
@@ -78,7 +79,7 @@ export function instance(value, type, what) {
     return value instanceof type ? value : fail(`${what} is a ${type.name}, and not ${shown(value)}`);
 }
 
-/** A misspelt option is an error, because it would be ignored. */
+/** Throws for an unknown option, because a misspelt option would otherwise be ignored. */
 export function onlyKnown(options, known, what) {
     const unknown = Object.keys(object(options, what)).find((key) => !known.includes(key));
     if (unknown !== undefined) {

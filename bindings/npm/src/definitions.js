@@ -37,7 +37,7 @@ function lookup(table, name, what) {
 
 const optionalLookup = (table, name, what) => (name === undefined ? undefined : lookup(table, name, what));
 
-/** Bits of the options that are true, and of those that are false. */
+/** Bits of the options that are true, and bits of the options that are false. */
 function bitsOfFlags(options, bits) {
     let [set, cleared] = [0, 0];
     for (const [name, bit] of Object.entries(bits)) {
@@ -135,7 +135,7 @@ export function writeShape(at, value) {
     flags(at, "shape_def", set, cleared & ~set);
 }
 
-/** Replaces the chains of a body by their links, as bytes. */
+/** Replaces each chain of a body by its links, which are encoded structs. */
 export function expand(shapes) {
     return array(shapes, "shapes").flatMap((each) => (shapeOf(each).closed === undefined ? [each] : chainLinks(each)));
 }

@@ -229,7 +229,7 @@ export class Angle {
     }
 }
 
-/** An angle as a number above minus one half turn and up to plus one half turn. */
+/** An angle as a signed number of units of 2^-32 turn, above -1/2 turn and up to 1/2 turn. */
 const signed = (bits) => (bits === 0x80000000 ? BigInt(bits) : BigInt.asIntN(32, BigInt(bits)));
 
 const angleOf = (raw) => new Angle(Number(BigInt.asUintN(32, raw)));

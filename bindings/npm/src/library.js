@@ -52,7 +52,7 @@ async function load(modules, { simd, wasm }) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** Makes `init` for two inlined modules. Once `init` has succeeded, further calls of it change nothing. */
+/** Makes `init` for two inlined modules. Once `init` has succeeded, further calls of `init` change nothing. */
 export const initializer = (modules) => (options = {}) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;
@@ -72,7 +72,7 @@ export function library() {
     return exports;
 }
 
-// Growth of the memory detaches the old buffer.
+// When the memory of the module grows, its old buffer is detached, and the views are made again.
 function memory() {
     if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
         bytes = new Uint8Array(exports.memory.buffer);
@@ -101,10 +101,10 @@ export function scratch(size) {
     return reserve(SMALL + size) + SMALL;
 }
 
-/** Address of 64 bytes that `scratch` never returns, for mathematics: getters of arguments may call it. */
+/** Address of 64 bytes that `scratch` never returns, for mathematics, which a getter of an argument may use. */
 export const small = () => reserve(SMALL);
 
-/** Runs `convert`, which reads arguments. Getters that reuse the scratch memory are an error. */
+/** Runs `convert`, which reads arguments. Throws if a getter of an argument has reused the scratch memory. */
 function reading(convert) {
     const before = scratches;
     const result = convert();
@@ -121,7 +121,7 @@ export function lastText() {
 }
 
 export function failure(status) {
-    // The library names options in snake case.
+    // The library names options in snake case, JavaScript in camel case.
     const message = lastText().replace(/`[a-z]+(_[a-z]+)+`/g, camel);
     return new Lockstep2dError(NAMES[status] ?? `STATUS_${status}`, message);
 }
@@ -133,7 +133,7 @@ export function statusOf(name, ...given) {
         throw new Lockstep2dError("INIT", "`init` of `lockstep2d/core` was called first: it loads a module without replays and matches");
     }
     for (const value of given) {
-        // WebAssembly would convert other arguments without an error.
+        // WebAssembly would convert other values to integers without an error.
         if (typeof value !== "bigint" && !(Number.isInteger(value) && value >= 0 && value <= 0xffffffff)) {
             fail(`an argument of ${name.replace("ls2d_", "")} is an integer from 0 to 4294967295, and not ${shown(value)}`);
         }
@@ -143,7 +143,8 @@ export function statusOf(name, ...given) {
     return status;
 }
 
-/** Calls a function, and returns whether there was something to return. Failures are thrown. */
+/** Calls a function. Returns true for the status OK, false for NONE (nothing to return), and throws other statuses as
+ * errors. */
 export function call(name, ...given) {
     const status = statusOf(name, ...given);
     if (status > STATUS.NONE) {
@@ -219,7 +220,7 @@ const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-// Fields of each struct: name in JavaScript, offset, kind, and number of items of an array.
+// For each struct, its fields: name in JavaScript, offset, kind, and for an array the number of items.
 const FIELDS = Object.fromEntries(
     Object.entries(STRUCTS).map(([name, { fields }]) => [name, Object.entries(fields).map(([field, rest]) => [camel(field), ...rest])]),
 );
@@ -305,11 +306,12 @@ export function takeBytes(handle) {
 
 export const text = (data) => DECODER.decode(data);
 
-// Bytes for the items of a list. Memory never shrinks, so a list of small items reserves nothing for one of large items.
+// Number of bytes reserved for the items of a list. It counts bytes, not items: a long list of small items would
+// otherwise make lists of large items reserve much memory, and the memory never shrinks.
 let room = 4096;
 
-/** Calls `ask`, which writes items of `size` bytes, with larger and larger buffers until they fit. Returns their
- * address and number. `prepare` writes other arguments to the `before` bytes in front of them. */
+/** Calls `ask`, which writes items of `size` bytes, with larger and larger buffers until the items fit. Returns the
+ * address and the number of the items. `prepare` writes other arguments to the `before` bytes in front of the items. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
         const capacity = Math.floor(room / size);
@@ -354,7 +356,7 @@ export class Handle {
     }
 }
 
-/** Lets `using` dispose of the objects of a class, where JavaScript has it. */
+/** Lets `using` dispose of the objects of a class, if JavaScript has `Symbol.dispose`. */
 export function disposable({ prototype }) {
     if (Symbol.dispose) {
         prototype[Symbol.dispose] = prototype.dispose;

@@ -30,7 +30,7 @@ function identity({ peer, key, secret }) {
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
-/** The options that have to be equal for all peers. */
+/** The default offer: the options that have to be equal for all peers. */
 const offerOf = ({ seats, inputBytes, tickRate, patience }) => nativeOffer({ rules: "", seats, inputBytes, tickRate, patience });
 
 export class Match extends Handle {
@@ -223,7 +223,7 @@ export class MatchDriver {
     #isFinished = false;
     #failure;
     #sendError;
-    // Inputs that were read and not issued. They are passed again, so that a key press counts once.
+    // Inputs that were read but not issued. They are passed again, so that each key press counts exactly once.
     #unissued;
 
     constructor(match, game, send) {
@@ -242,7 +242,7 @@ export class MatchDriver {
     }
 
     get ended() {
-        // After `ask`, the numbers of ticks are those of no match until the state arrives.
+        // After `ask`, there is no match until the state arrives, and `ticks` would throw.
         return this.#isFinished && this.#match.status !== "connecting" && this.#tick === this.#match.ticks().final;
     }
 
@@ -290,8 +290,8 @@ export class MatchDriver {
         return missing;
     }
 
-    // Plays the ticks that are due. An error because of the inputs is returned, not thrown: no inputs were issued, so
-    // the match is as before, and continues with the next inputs.
+    // Plays the ticks that are due. Returns an error that concerns the inputs instead of throwing it: no inputs were
+    // issued, so the match can continue with the next inputs.
     #play(now, readInputs) {
         while (this.#match.isDue(now)) {
             const { seats, inputBytes } = this.#match;
@@ -317,7 +317,7 @@ export class MatchDriver {
         return undefined;
     }
 
-    // A data channel throws when its other end is gone. The packet is then lost, as packets may be.
+    // `send` of a data channel throws if the other page is gone. The packet then counts as lost in the network.
     #transmit() {
         for (let sent = this.#match.nextPacket(); sent !== undefined; sent = this.#match.nextPacket()) {
             try {
@@ -374,7 +374,7 @@ export class MatchDriver {
                 this.#match.reportHash(tick, this.#saved(tick).hash);
                 break;
             default:
-                // The newest state up to this tick is kept, for peers that join.
+                // Keeps the newest state up to this tick, for peers that join.
                 this.#forgetBefore(tick);
         }
     }

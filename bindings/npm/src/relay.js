@@ -4,21 +4,21 @@ import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
 const SECRET = 16;
-// First pause in milliseconds before a reconnection, doubled with each failure.
+// First pause before a reconnection, in milliseconds. Each failure doubles the pause.
 const PAUSE_MIN = 250;
 // Longest pause in milliseconds.
 const PAUSE_MAX = 8000;
 // Longest wait for the list of members after a connection was opened, in milliseconds.
 const CONNECT_MAX = 10_000;
-// Time in milliseconds without a frame after which the relay is asked for an answer.
+// Time without a frame after which a probe is sent to the relay, in milliseconds.
 const ASK_AFTER = 5000;
-// Time in milliseconds without an answer after which the connection counts as lost.
+// Time without an answer to the probe after which the connection counts as lost, in milliseconds.
 const LOST_AFTER = 10_000;
-// Interval in milliseconds at which silence is checked.
+// Interval at which `#watch` runs, in milliseconds.
 const WATCH = 1000;
 // Largest number of bytes that wait to be sent.
 const BUFFERED_MAX = 512 * 1024;
-// Close codes without reconnection: a wrong secret, and another connection of the same member.
+// Close codes after which the member does not reconnect: a wrong secret, and a newer connection of the same member.
 const FINAL = [4000, 4003];
 
 const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
@@ -32,7 +32,8 @@ export class Relay {
     #pause = PAUSE_MIN;
     #timer;
     #watcher;
-    // Times of the last frame and, since then, of the question; whether the relay has sent the list of members.
+    // Time of the last frame, and time of the probe if one was sent since then. `#isOverdue` and `#entered`: whether
+    // the answer to the probe is overdue, and whether the relay has sent the list of members.
     #heard;
     #asked;
     #isOverdue = false;
@@ -88,7 +89,7 @@ export class Relay {
         try {
             socket = new this.#WebSocket(this.#url);
         } catch (error) {
-            // A bad URL, or ws:// in a page that was loaded over https.
+            // The URL is bad, or begins with ws:// in a page that was loaded over https.
             throw unusable(error.message);
         }
         socket.binaryType = "arraybuffer";
@@ -98,7 +99,7 @@ export class Relay {
         this.#watcher ??= setInterval(() => this.#watch(), WATCH);
         socket.onopen = () => socket.send(this.#secret);
         socket.onmessage = ({ data }) => socket === this.#socket && this.#frame(data);
-        // The package `ws` throws errors without a listener.
+        // The package `ws` throws an error for which there is no listener.
         socket.onerror = () => {};
         socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
     }
@@ -109,9 +110,10 @@ export class Relay {
         this.#isOverdue = false;
     }
 
-    // A page cannot send pings, and the socket of a dead connection stays open for minutes. The relay returns a
-    // datagram to its own sender, so an empty one is the question. Only a question without an answer shows that the
-    // connection is lost, so that a page that was suspended keeps its connection.
+    // A page cannot send WebSocket pings, and the socket of a dead connection stays open for minutes. The relay returns
+    // datagrams that a member sends to itself, so an empty datagram of this kind serves as a probe. Silence alone does
+    // not mean that the connection is lost, because the page may have been suspended. Only an unanswered probe means a
+    // lost connection.
     #watch() {
         if (this.#socket === undefined) {
             return;
@@ -121,7 +123,8 @@ export class Relay {
             now - this.#heard < CONNECT_MAX || this.#abandon();
         } else if (this.#asked !== undefined) {
             if (now - this.#asked >= LOST_AFTER) {
-                // An answer may wait behind this timer, as after a suspension of the page.
+                // After a suspension of the page, the answer may be queued behind this timer: waits for one more
+                // interval.
                 this.#isOverdue ? this.#abandon() : (this.#isOverdue = true);
             }
         } else if (now - this.#heard >= ASK_AFTER) {
@@ -130,7 +133,7 @@ export class Relay {
         }
     }
 
-    // Does not wait for the end of the socket, because the other side may never confirm it.
+    // Does not wait until the socket is closed, because the other side may never confirm the end of the connection.
     #abandon() {
         const socket = this.#socket;
         this.#lost(1006, "it does not answer");

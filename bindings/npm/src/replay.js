@@ -287,7 +287,8 @@ export class ReplayDriver {
         this.#tick = tick;
     }
 
-    // The replay moves on with each request, also if the game fails, or if the request went to another driver.
+    // Checks that the game is at the tick of the replay. The replay moves on with each request, even if the game then
+    // fails or another driver takes the request.
     #expect(tick) {
         if (this.#tick !== tick) {
             fail(`the replay is at tick ${tick}, and the game at tick ${this.#tick}: ${STRAYED}`);

@@ -1,4 +1,5 @@
-// Wrong arguments give errors with a code and the name of the argument. WebAssembly would convert them to integers.
+// Wrong arguments give errors with a code and the name of the argument. Without these checks, WebAssembly would convert
+// wrong arguments to integers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -55,7 +56,7 @@ test("a query needs its whole place", () => {
     const w = world();
     w.spawn({ position: [5, 5], shapes: [L.circle(1)] });
     for (const call of [
-        // The second of two calls would find the arguments of the first in memory.
+        // If the second call did not fail, it would read the arguments that the first one left in memory.
         () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox([-2, -2])],
         () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox(undefined, [9, 9])],
         () => w.overlapBox(), () => w.overlapShape(L.circle(1)), () => w.castShape(L.circle(1), undefined, [1, 0]),

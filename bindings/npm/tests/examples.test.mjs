@@ -11,7 +11,7 @@ register(`data:text/javascript,${encodeURIComponent(`export const resolve = (nam
 const { Direct } = await import("../../../examples/web/direct.js");
 const { MatchRecording } = await import("../../../examples/web/recording.js");
 
-/** A match whose first ticks, up to `kept`, are no longer known. */
+/** A stand-in for a match that has dropped the inputs of the ticks below `kept`. */
 const matchOf = (confirmed, kept = 0) => ({
     status: "playing",
     ticks: () => ({ confirmed }),

@@ -1,4 +1,4 @@
-// A member of a room notices that its connection is dead. The WebSocket and the clock belong to the test.
+// A member of a room notices that its connection is dead. The test replaces the WebSocket and the clock.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";
@@ -6,7 +6,7 @@ import { L } from "./common.mjs";
 const [YOU, OTHER] = ["0102030405060708", "1112131415161718"];
 const bytesOf = (digits) => [...Buffer.from(digits, "hex")];
 
-/** A socket that ends only when the test says so, like that of a dead connection. */
+/** A socket that reports its end only when the test calls `onclose`, like the socket of a dead connection. */
 class Socket {
     static all = [];
     readyState = 0;
@@ -88,12 +88,12 @@ test("a connection without an answer is opened again", async (t) => {
     const again = Socket.all[1];
     again.enter();
     assert.deepEqual([relay.isOpen, members.mock.callCount(), again.sent], [true, 1, dead.sent.slice(0, 1)]);
-    // The first socket reports its end, with the code of a member that has connected again, minutes later.
+    // Minutes later, the first socket reports its end, with the code for a newer connection of the same member.
     dead.frame(OTHER, [1]);
     dead.onclose({ code: 4003, reason: "" });
     again.frame(OTHER, [2]);
     assert.deepEqual([packets, relay.isOpen], [[[2]], true]);
-    // A relay that accepts connections, and then sends nothing.
+    // The relay accepts connections, but then sends nothing.
     pass(17);
     assert.equal(Socket.all.length, 3);
     pass(11);

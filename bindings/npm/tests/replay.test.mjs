@@ -149,7 +149,7 @@ test("a game with rules in JavaScript goes to any tick of its replay", () => {
     driver.dispose();
     assert.equal(dropped, 6);
 
-    // After a difference, earlier ticks can be reached.
+    // After a checkpoint that differs, earlier ticks can still be reached.
     const wrong = new Sums();
     const other = new L.ReplayDriver(new L.Replay(record(300)), wrong);
     other.seek(130);
@@ -159,7 +159,8 @@ test("a game with rules in JavaScript goes to any tick of its replay", () => {
     assert.deepEqual(wrong.sums, states[100].sums);
 });
 
-/** Goes to a tick. The game is then at the driver's tick, even if the driver fails. Returns whether it has arrived. */
+/** Seeks to a tick, and returns whether the driver has arrived there. Checks that the game is at the driver's tick,
+ * even after a failure. */
 function arrives(driver, game, tick) {
     let error;
     try {

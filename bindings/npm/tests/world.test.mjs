@@ -70,7 +70,7 @@ test("all joints and shapes can be defined", () => {
     const shapes = [L.circle("0.5"), L.capsule([0, 0], [1, 0], "0.2"), L.polygon([[0, 0], [1, 0], [0, 1]], { rounding: "0.05" }),
         L.hull([[0, 0], [0, 1], [1, 0], ["0.1", "0.1"]]), L.box(1, "0.1", { density: 3 })];
     const bodies = shapes.map((shape, index) => world.spawn({ position: [3 * index, 5], name: `b${index}`, shapes: [shape] }));
-    // A joint that is violated by metres would cause faults.
+    // The anchors suit the positions of the bodies: an error of metres would cause faults.
     const kinds = [
         { type: "revolute", anchor: [1, 5], limit: ["-0.5", "0.5"], motor: { speed: 1, max: 10 } },
         { type: "prismatic", anchor: [1, 5], axis: [0, 1], spring: { hertz: 2, dampingRatio: "0.5", target: 0 } },
@@ -85,7 +85,7 @@ test("all joints and shapes can be defined", () => {
     ];
     const joints = kinds.map((kind, index) => world.addJoint({ a: index % 2 ? ground : bodies[0], b: bodies[1 + (index % 4)], ...kind }));
     assert.deepEqual(world.joints(), joints);
-    // A joint that is read and set again is the same.
+    // A joint does not change if its definition is read and set again.
     const before = world.hash();
     joints.forEach((joint) => world.setJoint(joint, world.joint(joint)));
     assert.equal(world.hash(), before);
@@ -281,7 +281,7 @@ test("a character walks, climbs a step, rides a lift and stops at a wall", () =>
         world.step();
         const velocity = [3, L.fx(state.velocity?.y ?? 0).sub("0.16")];
         const moved = L.moveCharacter(world, mover, { ...state, velocity });
-        // A state that was encoded and decoded continues like one that was not.
+        // Every second state is encoded and decoded, which must not change the result.
         state = tick % 2 === 0 ? L.decodeMoverState(L.encodeMoverState(moved.state)) : moved.state;
         onGround += moved.state.isOnGround ? 1 : 0;
         met += moved.met.length;

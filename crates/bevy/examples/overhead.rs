@@ -1,5 +1,5 @@
-//! Measures what the plugin adds to a step of a pyramid of about 1000 boxes that stay awake. The step is timed without
-//! Bevy, and in an app with views. Run it with `--release`.
+//! Measures the time that the plugin adds to a step of a pyramid of about 1000 boxes that stay awake. The step is timed
+//! without Bevy, and in an app with views. Run it with `--release`.
 
 use std::time::{Duration, Instant};
 

@@ -59,7 +59,7 @@ impl Platformer {
         Ok(Platformer { world, mover, state })
     }
 
-    /// The lift turns at both ends of its way.
+    /// Reverses the lift at both ends of its path.
     fn drive_lift(&mut self) -> Result<(), WorldError> {
         let lift = self.state.lift;
         if let Some(body) = self.world.body(lift) {
@@ -86,7 +86,7 @@ impl Platformer {
         self.collect()
     }
 
-    /// Coins that the hero has entered disappear.
+    /// Removes the coins whose sensors the hero has entered.
     fn collect(&mut self) -> Result<(), WorldError> {
         let taken: Vec<ShapeId> = self.world.events().sensor_begin.iter().map(|event| event.sensor).collect();
         for coin in taken.into_iter().filter(|coin| self.state.coins.contains(coin)) {
@@ -115,7 +115,7 @@ impl Game for Platformer {
     }
     fn step(&mut self, inputs: &[u8]) {
         let driven = self.drive_lift();
-        // The world steps even after a refused command.
+        // The world steps even if it has refused to move the lift.
         self.world.step();
         let walked = self.walk(inputs.first().copied().unwrap_or(0));
         if let Err(error) = driven.and(walked) {

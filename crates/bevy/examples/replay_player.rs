@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn control(keys: Res<ButtonInput<KeyCode>>, mut lockstep: ResMut<Lockstep<Sandbox>>) {
-    // Otherwise every mutable access would count as a change of the resource.
+    // With change detection, every mutable access would count as a change of the resource.
     let lockstep = lockstep.bypass_change_detection();
     let (tick, end) = (lockstep.tick(), lockstep.replay_ticks().unwrap_or(0));
     if keys.just_pressed(KeyCode::Space) {

@@ -9,14 +9,15 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::prelude::LockstepStatus;
 use lockstep2d::draw::{PAPER, Style};
 
-/// Variable with the file for the picture.
+/// Environment variable with the file for the picture.
 const FILE: &str = "LOCKSTEP2D_SCREENSHOT";
-/// Variable with the number of frames before the picture.
+/// Environment variable with the number of frames before the picture.
 const FRAMES: &str = "LOCKSTEP2D_FRAMES";
-/// Variable with the least number of pixels of each style, such as `fixed=1400 dynamic=400`.
+/// Environment variable with the least number of pixels of each style, such as `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
-/// Largest accepted difference of a colour channel. A channel is rounded to a linear float and back.
+/// Largest accepted difference of a colour channel. Rendering converts a channel to a linear float and back, and rounds
+/// it.
 const TOLERANCE: u8 = 2;
 
 #[derive(Resource)]
@@ -85,7 +86,7 @@ fn check(
     Ok(())
 }
 
-/// Checks the numbers of pixels. At least half of a picture, but not all of it, must be background.
+/// Checks the number of pixels of each style. At least half of a picture, but not all of it, must be background.
 fn compare(pixels: &[[u8; 3]], shows: &[Expected]) -> Result<(), String> {
     let of_colour = |colour: u32| pixels.iter().filter(|pixel| is_near(**pixel, colour)).count();
     let (background, total) = (of_colour(PAPER), pixels.len());

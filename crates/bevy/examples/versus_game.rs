@@ -54,7 +54,7 @@ impl Game for Versus {
     }
     fn step(&mut self, inputs: &[i8]) {
         for (player, pad) in self.players.into_iter().zip(inputs) {
-            // A refused push has no effect.
+            // A push that the world refuses has no effect.
             let _ = self.push(player, *pad);
         }
         self.world.step();

@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
 use bevy_lockstep2d::{LockstepGame, LockstepGizmosPlugin};
 
-/// An app with a window and the plugin. `metres` are visible from left to right, around `centre`.
+/// An app with the plugin and a window, which is `metres` wide and has `centre` in its middle.
 pub fn app<G: LockstepGame>(title: &str, metres: f32, centre: Vec2) -> App {
     let (width, height) = (960_u16, 640_u16);
     let scale = f32::from(width) / metres;

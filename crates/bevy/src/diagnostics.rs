@@ -11,7 +11,7 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepStatus;
 
-/// Measures the diagnostics named by its constants, for example for `LogDiagnosticsPlugin`.
+/// Measures the diagnostics whose paths are its constants. `LogDiagnosticsPlugin`, for example, prints them.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepDiagnosticsPlugin<G>(PhantomData<fn() -> G>);
 
@@ -22,7 +22,7 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 }
 
 impl<G> LockstepDiagnosticsPlugin<G> {
-    /// Time of the driver in a frame, in milliseconds: [`LockstepStatus::step_time`].
+    /// Time that the driver takes in a frame, in milliseconds: [`LockstepStatus::step_time`].
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
     /// Largest number of ticks that a rollback in a frame went back.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
@@ -45,7 +45,7 @@ impl<G: LockstepGame> Plugin for LockstepDiagnosticsPlugin<G> {
     }
 }
 
-/// Frames between two measurements of a save. Each of them encodes a save.
+/// Frames between two measurements of a save. Each measurement encodes a save.
 const SAVE_INTERVAL: u32 = 64;
 
 fn measure<G: LockstepGame>(

@@ -16,8 +16,8 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 /// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command in the input of a player, so it is
 /// recorded.
 ///
-/// A system of the game passes the pointer to the hand. With the feature `picking`, `PointerDragPlugin` does so for
-/// mouse and touch.
+/// A system of the game passes the position of its pointer to the [`DragHand`]. With the feature `picking`,
+/// `PointerDragPlugin` passes the positions of mouse and touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DragPlugin;
 
@@ -41,8 +41,8 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is none,
-    /// holds the first body that the pointer reaches.
+    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is no
+    /// dynamic body, holds the first one that the pointer reaches.
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }
@@ -101,8 +101,8 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // Replaces the force of an earlier frame in which no tick was played. In a frame with two ticks, only the first
-    // applies it.
+    // Replaces the force that remains from an earlier frame without a tick. In a frame with two ticks, only the first
+    // tick applies the force.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);

@@ -21,10 +21,10 @@ pub enum LockstepError {
     Match(PeerError),
     /// No tick of the replay can be played.
     Replay(Box<Verdict>),
-    /// The replay cannot be played to a tick.
+    /// The replay cannot be played to the requested tick.
     Seek(SeekError),
-    /// A sync test found a state that depends on more than the inputs: loading a save loses state, or a step reads
-    /// other data.
+    /// A sync test found a state that depends on more than the inputs: a save lacks a part of the state, or a step
+    /// reads data outside of the state and the inputs.
     SyncTest {
         /// Number of ticks after which the states differ.
         tick: u64,

@@ -1,10 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
 //! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent once, when its tick is final. All
-//! peers have the same confirmed events in the same order. A peer that received a state lacks the events before that
-//! state. A [`PredictedEvent`] is sent when an event first occurs in a played tick, for sounds and particles. A
-//! [`RetractedEvent`] follows if a rollback removes the event. A local game and a replay send predicted and confirmed
-//! events in the same frame.
+//! peers have the same confirmed events in the same order. A peer that joins late starts from a received state, and
+//! lacks the events of earlier ticks. A [`PredictedEvent`] is sent when an event first occurs in a played tick, for
+//! sounds and particles. A [`RetractedEvent`] follows if a rollback removes the event. A local game and a replay send
+//! predicted and confirmed events in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -44,7 +44,7 @@ impl WorldEvent {
         }
     }
 
-    /// Whether both events are of one kind, and of the same shapes, joint or body. Numbers such as a speed may differ.
+    /// Whether both events have the same kind, and the same shapes, joint or body. Numbers such as a speed may differ.
     fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
@@ -61,7 +61,7 @@ impl WorldEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
     /// Bodies of the shapes or joint, if they exist after the tick; or the body that fell asleep.
@@ -108,7 +108,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
 /// An event of a final tick, sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -117,11 +117,11 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event of a played tick, which a rollback may remove until the tick is confirmed. If a rollback moves the event by
-/// up to 16 ticks, it is not sent again.
+/// An event of a played tick. A rollback may remove the event until its tick is confirmed. If a rollback moves the
+/// event by up to 16 ticks, it is not sent again.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -129,11 +129,12 @@ pub struct PredictedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound. It is sent more than 16 ticks after
-/// the event, because the event may occur again until then, or when the match has ended.
+/// Reports that a rollback has removed a [`PredictedEvent`], whose sound can then be stopped, for example. It is sent
+/// more than 16 ticks after the event, because the event may occur again until then. At the end of a match, it is sent
+/// at once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event that was predicted.
     pub event: WorldEvent,
@@ -146,7 +147,7 @@ pub struct BodyEvent {
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,

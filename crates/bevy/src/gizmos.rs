@@ -43,7 +43,7 @@ pub struct LockstepGizmos {
     pub contact_normals: bool,
     /// Normal and friction forces.
     pub contact_forces: bool,
-    /// Contact points in one colour per colour of the solver.
+    /// Contact points in the colours of the solver's graph colouring.
     pub solver_colours: bool,
     /// Anchors and arms of joints.
     pub joints: bool,
@@ -173,7 +173,7 @@ fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     };
     let arc = |index: usize| {
         let (before, after) = (normal(index + count - 1), normal(index));
-        // At the end of a line, the arc is a half circle.
+        // The outline of a line, which has two vertices, ends in half circles.
         let turn = if before.dot(after) < -0.999 { core::f32::consts::PI } else { before.angle_to(after) };
         (0..=4_u8).map(move |part| before.rotate(Vec2::from_angle(turn * f32::from(part) / 4.0)))
     };

@@ -8,8 +8,9 @@ use crate::game::LockstepGame;
 ///
 /// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
 /// that are down. A *once* input replaces the held input for the next played tick alone: a jump, a list of commands. So
-/// a press counts once. During a pause it waits for the next tick. In a replay, for a spectator and after an error, it is
-/// removed in the same frame; when another game begins, before the systems of that set run.
+/// a press counts once. During a pause, a *once* input waits for the next tick. In a replay, for a spectator and after
+/// an error, it is removed in the same frame. When another game begins, it is removed before the systems of
+/// [`LockstepSystems::Inputs`](crate::LockstepSystems) run.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;
@@ -20,7 +21,7 @@ use crate::game::LockstepGame;
 #[derive(Resource)]
 pub struct Inputs<G: LockstepGame> {
     seats: Vec<Seat<G::Input>>,
-    /// Number of the game for which the inputs are: see `Lockstep::number`.
+    /// Number of the game that receives the inputs: see `Lockstep::number`.
     game: Option<u64>,
 }
 
@@ -79,14 +80,14 @@ impl<G: LockstepGame> Inputs<G> {
         (0..players).map(of).collect()
     }
 
-    /// Sets the game for which the inputs are. Removes `once` inputs that a former game has not used.
+    /// Sets the game that receives the inputs. Removes `once` inputs that a former game has not used.
     pub(crate) fn begin_game(&mut self, number: u64) {
         if self.game.replace(number).is_some_and(|former| former != number) {
             self.used();
         }
     }
 
-    /// Notes that the inputs of [`Inputs::next`] have been used, or that nobody can use them.
+    /// Removes the `once` inputs, because a tick has used them or no tick can use them.
     pub(crate) fn used(&mut self) {
         for seat in &mut self.seats {
             seat.once = None;

@@ -14,9 +14,9 @@ use crate::views::BodyView;
 /// A body for [`build_level`]. The entity becomes its view.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnBody {
-    /// The body. The `Transform` does not give its position, because floats are rounded.
+    /// The body with its position. The `Transform` of the entity is ignored, because floats are rounded.
     pub body: BodyDef,
-    /// Its shapes.
+    /// Shapes of the body.
     pub shapes: Vec<ShapeDef>,
 }
 
@@ -112,7 +112,7 @@ impl core::error::Error for LevelError {}
 /// [`LevelError`]. All entities are then unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
-    // A scratch world finds the ids of the bodies, which are the same in the game.
+    // A scratch world assigns the same ids to the bodies as the world of the game.
     let mut scratch = World::new(config).map_err(|error| LevelError::Refused { entity: None, error })?;
     let mut commands = Vec::new();
     let mut bodies = EntityHashMap::default();

@@ -33,7 +33,7 @@
 //! The systems of [`LockstepPlugin`] run in the schedule `RunFixedMainLoop`, in the sets of [`LockstepSystems`].
 //! Systems that fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
 
-// Floats are not forbidden here: views affect a game only through its inputs.
+// Floats are allowed here, because views affect a game only through its inputs.
 #![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
 #![warn(unreachable_pub)]
 

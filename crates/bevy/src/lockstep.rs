@@ -35,7 +35,7 @@ pub enum DriverKind {
 /// The game can be changed only through [`Inputs`]: other changes would be missing on other machines and in the replay.
 #[derive(Resource)]
 pub struct Lockstep<G: LockstepGame> {
-    /// Distinguishes this value from others of the program: a resource may be replaced within a frame.
+    /// Unique in the program. A resource that is replaced within a frame is recognised by its new number.
     number: u64,
     driver: Driver<G>,
     is_paused: bool,
@@ -73,7 +73,7 @@ impl<G: LockstepGame> Lockstep<G> {
     /// A replay, from its first tick.
     ///
     /// # Errors
-    /// [`LockstepError::Replay`] with the verdict when nothing of the file can be played.
+    /// [`LockstepError::Replay`] with the verdict when no tick of the file can be played.
     pub fn replay(file: Vec<u8>, limits: &Limits) -> Result<Self, LockstepError> {
         Ok(Self::new(Driver::Replay(Box::new(ReplayDriver::new(file, limits)?))))
     }
@@ -196,7 +196,7 @@ impl<G: LockstepGame> Lockstep<G> {
     /// Goes to a tick of a replay, forwards or backwards, without events. A replay that has failed can go back.
     ///
     /// # Errors
-    /// [`LockstepError::Seek`] when there is no such tick or the replay cannot be played so far.
+    /// [`LockstepError::Seek`] when the replay does not have the tick, or cannot be played up to it.
     /// [`LockstepError::Unsupported`] for other drivers.
     pub fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
         let Driver::Replay(replay) = &mut self.driver else { return Err(LockstepError::Unsupported("seek")) };
@@ -277,7 +277,8 @@ impl<G: LockstepGame> Lockstep<G> {
     /// Report of a desync, as bytes for a file: see [`Peer::report`].
     ///
     /// # Errors
-    /// [`LockstepError::Match`] when the states for it are not kept, [`LockstepError::Unsupported`] for other drivers.
+    /// [`LockstepError::Match`] when this peer no longer has the states for it, [`LockstepError::Unsupported`] for
+    /// other drivers.
     pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
         match &mut self.driver {
             Driver::Match(network) => network.report(desync),
@@ -313,7 +314,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.peer_mut().and_then(Peer::next_event)
     }
 
-    /// Whether no further tick will be played, unless a replay goes back.
+    /// Whether an error has stopped the game, or its match has ended. Only a replay can still play ticks, after a seek.
     pub(crate) fn has_ended(&self) -> bool {
         self.failure.is_some() || matches!(&self.driver, Driver::Match(network) if network.has_ended())
     }

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::step_log::{Stamp, StepLog};
 
-/// A game, and a log of its steps. Rules, inputs, saves and hashes are those of `G`, so peers and replays without Bevy
-/// can take part.
+/// A game, and a log of its steps. Rules, inputs, saves and hashes are those of `G`, so peers without Bevy can join its
+/// matches and verify its replays.
 pub struct Observed<G> {
     game: G,
     log: Mutex<StepLog>,

@@ -128,7 +128,7 @@ fn views_at<'a>(
 #[derive(Resource, Default)]
 struct HoldingPointer(Option<RayId>);
 
-/// Presses on a view or one of its children start to drag its body.
+/// A press on a view or on one of its children starts to drag the body of the view.
 fn grab(
     press: On<Pointer<Press>>,
     views: Query<&BodyView>,

@@ -58,7 +58,7 @@ pub struct LockstepSettings {
     /// Time in which the displacement of a view halves after a rollback has moved its body. Zero moves the view at
     /// once.
     pub smoothing_half_life: Duration,
-    /// Displacements above this limit, in metres, are jumps without smoothing or interpolation. It applies to
+    /// Displacements above this limit, in metres, are jumps without smoothing or interpolation. The limit applies to
     /// displacements by a rollback, and to movements in a tick that the body's velocity does not explain.
     pub smoothing_limit: f32,
 }
@@ -85,7 +85,7 @@ impl LockstepSettings {
     }
 }
 
-/// Status of the game, updated in each frame. The default while there is no game.
+/// Status of the game, updated in each frame. Has its default value while there is no game.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {
@@ -103,16 +103,16 @@ pub struct LockstepStatus {
     pub step_time: Duration,
 }
 
-/// Sets of the plugin, in their order, in `RunFixedMainLoop`.
+/// System sets of the plugin in `RunFixedMainLoop`, in the order in which they run.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LockstepSystems {
     /// Systems of the game that fill [`Inputs`], once a frame.
     Inputs,
-    /// Ticks are played: none, one, or several.
+    /// The driver plays ticks: none, one, or several.
     Step,
-    /// Views are spawned, moved and despawned.
+    /// The plugin spawns, moves and despawns views.
     Views,
-    /// Events are sent.
+    /// The plugin sends events.
     Events,
 }
 

@@ -53,10 +53,10 @@ pub(crate) struct Offset {
     angle: f32,
 }
 
-/// Length in metres. An offset is dropped if its length is below this limit and its angle below [`ANGLE_MIN`]. A tenth
-/// of a pixel at the default scale.
+/// Length in metres below which an offset is dropped, if its angle is also below [`ANGLE_MIN`]. It is a tenth of a
+/// pixel at the default scale.
 const POSITION_MIN: f32 = 1e-3;
-/// Angle in radians below which an offset can be dropped.
+/// Angle in radians: see [`POSITION_MIN`].
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {
@@ -82,7 +82,7 @@ impl Offset {
             return;
         }
         let half_lives = time.as_secs_f32() / half_life.as_secs_f32();
-        // Without a half-life, the quotient may be infinite or not a number.
+        // If the half-life is zero, the quotient is infinite or not a number.
         let factor = if half_life.is_zero() { 0.0 } else { (-half_lives).exp2() };
         self.position *= factor;
         self.angle *= factor;

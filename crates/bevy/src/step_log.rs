@@ -21,7 +21,8 @@ pub(crate) struct Stamp {
     ticks: u64,
 }
 
-/// An event, and the tick with which it was sent as predicted. A rollback may have moved it since then.
+/// An event. It is announced if its [`PredictedEvent`](crate::PredictedEvent) was sent, here with the tick of that
+/// message. A later rollback may have moved the event to another tick.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     event: LoggedEvent,
@@ -43,7 +44,7 @@ pub(crate) struct Shown {
     pub(crate) identity: Identity,
 }
 
-/// A position to return to: see [`StepLog::return_to`].
+/// A tick to return to: see [`StepLog::return_to`].
 #[derive(Debug)]
 pub(crate) struct Mark {
     stamp: Stamp,
@@ -69,8 +70,8 @@ pub(crate) struct StepLog {
     shown: Option<Stamp>,
     /// Poses of the tick `shown`, if it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Shown bodies whose ids may now belong to other bodies: those that a loaded state lacks, and those from before a
-    /// seek.
+    /// Shown bodies whose ids may now belong to other bodies: bodies that a loaded state lacks, and all bodies from
+    /// before a seek.
     pub(crate) missing: BTreeMap<BodyId, Shown>,
     /// Number of ticks played since the last frame, including repeated ones.
     pub(crate) stepped: u32,
@@ -122,14 +123,16 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
-        // A body that is the same in the tick of its identity keeps its view, whatever changes in later ticks.
+        // If the tick of an identity is played again and the body still has that identity, the body keeps its view.
+        // Changes in later ticks do not matter.
         let (now, is_same) = (self.stamp(), |body, shown: &Shown| shown.identity.is_of(world, body));
         self.missing.retain(|body, shown| shown.at != now || !is_same(*body, shown));
-        // A game need not step its world in every tick, for example in a pause between rounds.
+        // Some games do not step their world in every tick, for example in a pause between rounds.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
-            // An event is matched to the nearest alike one, and to the older one of two at equal distances.
+            // An event that occurs again takes the place of the nearest withdrawn event that is alike. Of two at equal
+            // distances, it takes the place of the older one.
             let distance = |other: &Withdrawn| other.event.tick.abs_diff(event.tick);
             let alike = withdrawn
                 .iter()
@@ -141,7 +144,8 @@ impl StepLog {
         });
     }
 
-    /// Must be called before a load or a seek, for [`StepLog::loaded`] or [`StepLog::relocate`].
+    /// Returns the identities of all bodies. Must be called before a load or a seek, to pass the result to
+    /// [`StepLog::loaded`] or [`StepLog::relocate`].
     pub(crate) fn leave(&self, world: Option<&World>) -> Vec<(BodyId, Shown)> {
         let is_recorded = self.suspended_at.is_none() && !self.is_after_stale;
         let Some(world) = world.filter(|_| is_recorded) else { return Vec::new() };
@@ -172,7 +176,7 @@ impl StepLog {
 
     fn miss(&mut self, bodies: impl IntoIterator<Item = (BodyId, Shown)>) {
         for (body, shown) in bodies {
-            // The view has the body of the last frame, which is the first one noted for an id.
+            // The view still shows the body of the last frame. The first identity noted for an id is that of this body.
             self.missing.entry(body).or_insert(shown);
         }
     }
@@ -219,7 +223,7 @@ impl StepLog {
         }
     }
 
-    /// The position and the unconfirmed events.
+    /// The current tick and the unconfirmed events.
     pub(crate) fn mark(&self) -> Mark {
         Mark { stamp: self.stamp(), pending: self.pending.clone() }
     }

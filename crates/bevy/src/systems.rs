@@ -65,13 +65,13 @@ pub(crate) fn write_views<G: LockstepGame>(
 ) {
     // The game may have despawned a view, or removed its component.
     views.retain(|view| all.get(view.entity).is_ok_and(|(_, shown)| shown.body() == view.body));
-    // Entities that the game has prepared as views. Those that the plugin has spawned for a former game are not among
-    // them.
+    // Entities that the game has prepared as views. They are not in the table `views` yet, unlike the views of a former
+    // game.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         all.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if views.begin_game(lockstep.number()) {
-        // The game is new. Views prepared for it are not in the table, so they are kept.
+        // The table has only views of the former game. Views prepared for the new game are not in it, so they are kept.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
     }
     let world = lockstep.world();
@@ -110,7 +110,7 @@ pub(crate) fn write_views<G: LockstepGame>(
     }
 }
 
-/// Despawns views of bodies that a rollback or a seek has replaced under the same ids.
+/// Despawns views of bodies that a rollback or a seek has replaced by other bodies with the same ids.
 fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepLog, world: Option<&World>) {
     for (&body, shown) in &log.missing {
         if !shown.identity.is_of(world, body)
@@ -148,8 +148,8 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was placed elsewhere: the way of its origin in a tick is longer than `limit` metres, and longer than
-/// twice the distance that the origin covers at its speed before or after the tick.
+/// Whether the game has teleported a body in the last tick: its origin moved by more than `limit` metres, and by more
+/// than twice its speed times the duration of a tick. The larger speed of before and after the tick counts.
 fn is_jump(
     world: Option<&World>,
     log: &StepLog,

@@ -54,9 +54,9 @@ pub struct BodyViews {
 pub(crate) struct View {
     pub(crate) body: BodyId,
     pub(crate) entity: Entity,
-    /// Pose before the last tick.
+    /// Pose of the body before the last tick.
     pub(crate) previous: Pose,
-    /// Pose after the last tick.
+    /// Pose of the body after the last tick.
     pub(crate) current: Pose,
     pub(crate) offset: Offset,
     /// Whether the `Transform` already shows `current`.
@@ -71,7 +71,7 @@ impl BodyViews {
         self.view(body).map(|view| view.entity)
     }
 
-    /// Sets the game whose bodies are shown. Returns whether it is another one.
+    /// Sets the game whose bodies are shown. Returns whether the game has changed.
     pub(crate) fn begin_game(&mut self, number: u64) -> bool {
         self.game.replace(number) != Some(number)
     }
@@ -99,19 +99,19 @@ impl BodyViews {
         self.slots.iter_mut().flatten()
     }
 
-    /// Drops the views for which `keep` is false, but not their entities.
+    /// Drops the views for which `keep` is false. Their entities stay.
     pub(crate) fn retain(&mut self, keep: impl Fn(&View) -> bool) {
         for slot in &mut self.slots {
             slot.take_if(|view| !keep(view));
         }
     }
 
-    /// Begins a frame. Views that are not [seen](BodyViews::see) in it are taken by [`BodyViews::take_unseen`].
+    /// Begins a frame. [`BodyViews::take_unseen`] takes the views that were not [seen](BodyViews::see) in the frame.
     pub(crate) fn begin_frame(&mut self) {
         self.frame = self.frame.wrapping_add(1);
     }
 
-    /// Moves the view of a body. Returns `false` if there is none.
+    /// Moves the view of a body. Returns `false` if the body has no view.
     pub(crate) fn see(&mut self, body: BodyId, previous: Pose, current: Pose) -> bool {
         let frame = self.frame;
         let Some(view) = self.view_mut(body) else { return false };

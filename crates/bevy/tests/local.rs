@@ -173,7 +173,7 @@ fn a_view_that_the_game_removes_is_replaced() {
     let views = app.world().resource::<BodyViews>();
     assert!(views.entity(gone) != Some(first) && views.entity(bare) != Some(second));
     assert!(app.world().get_entity(second).is_ok(), "it belongs to the game");
-    // A view that is given to another body.
+    // Makes the view of another body the view of `gone`.
     let (replaced, (_, third)) = (views.entity(gone).unwrap(), views.iter().nth(2).unwrap());
     app.world_mut().despawn(replaced);
     app.world_mut().entity_mut(third).insert(BodyView::new(gone));

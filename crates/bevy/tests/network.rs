@@ -110,7 +110,7 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     check_replay(players, end);
 }
 
-/// A frame is as long as a tick, so that a peer has to play several ticks in a frame.
+/// Frames are as long as ticks. To catch up, the spectator has to play several ticks in a frame.
 #[test]
 fn a_spectator_that_was_suspended_catches_up() {
     let network = bad_network();
@@ -167,7 +167,7 @@ fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
     assert!(all.values().map(Vec::len).sum::<usize>() > 500);
     assert_eq!(players[1].events(1, end), all);
-    // The spectator joined in the middle.
+    // The spectator joined in the middle of the match.
     let from = players[2].heard().confirmed.keys().next().copied().unwrap() + 1;
     assert!(from > 300, "{from}");
     assert_eq!(players[2].events(from, end), players[0].events(from, end));

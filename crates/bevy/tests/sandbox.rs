@@ -1,4 +1,5 @@
-//! A `Sandbox` in an app: bodies that commands put elsewhere, and a game that forgets a part of its state.
+//! Commands that teleport bodies or change velocities in a `Sandbox`, and a game whose `load` forgets a part of its
+//! state.
 
 use std::time::Duration;
 
@@ -32,7 +33,7 @@ fn heights(command: impl FnOnce(&BodyView) -> Command) -> Vec<f32> {
     heights_beside(vec![], ball(), command)
 }
 
-/// Heights of the view of a body with this shape, beside bodies of other commands.
+/// Heights of the view of a body with this shape. `commands` create the other bodies of the world.
 fn heights_beside(
     mut commands: Vec<Command>,
     shape: ShapeDef,
@@ -74,7 +75,7 @@ fn a_fast_body_is_drawn_on_its_way() {
 
 #[test]
 fn a_fast_body_that_is_stopped_is_drawn_on_its_way() {
-    // The ceiling stops the ball at 17.5 m, about 2.6 m after the end of a tick.
+    // The ceiling stops the ball at a height of 17.5 m, about 2.6 m above its height at the end of the tick before.
     let solid = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1)).unwrap());
     let ceiling = BodyDef::fixed().position((fx!(0), fx!(19)));
     let ceiling = Command::Spawn { body: ceiling, shapes: vec![solid] };

@@ -18,7 +18,8 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
-    /// Whether a command has written its output file to the standard output, so that its lines are messages.
+    /// Whether a command has written its output file to the standard output. The command then writes its lines to the
+    /// message stream.
     pub(crate) is_out_taken: bool,
     /// Whether messages go to a terminal.
     pub(crate) is_terminal: bool,

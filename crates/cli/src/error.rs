@@ -81,7 +81,7 @@ pub(crate) enum CommandError {
     NoBody {
         id: String,
     },
-    /// A file has no such state, or a state has no such field.
+    /// A file does not have the requested state, or a state does not have the requested field.
     NothingThere {
         what: String,
     },

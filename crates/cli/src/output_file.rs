@@ -1,14 +1,15 @@
 //! [`OutputFile`]: a file that is written beside its target and renamed when it is complete.
 //!
 //! Invariants, for a target that is a regular file or does not exist:
-//! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
-//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. Without hard links, a file that another
-//!   program creates just before [`OutputFile::publish`] can still be replaced.
+//! - The target has either its old contents or all of its new contents, also after a full disk, a panic or a kill.
+//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. On a file system without hard links, a
+//!   file that another program creates just before [`OutputFile::publish`] can still be replaced.
 //! - If the file system has locks, one process at a time writes a target. The others fail.
 //! - On Unix, only its owner can read a private file.
 //! - An input that is the temporary file of a killed process is left unchanged.
 //!
-//! A killed process leaves its temporary file. The next writer of the target reuses it, unless it has another name.
+//! A killed process leaves its temporary file. The next writer of the target reuses it, unless the file also has
+//! another name.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -108,11 +109,12 @@ impl OutputFile {
         let mut input = None;
         if inputs.iter().any(|input| is_at(&file, input)) {
             temporary = unfinished(&temporary);
-            // The lock of the usual name is held as well, because it keeps other writers from the target.
+            // The file with the usual temporary name stays locked, too, because this lock keeps other writers from the
+            // target.
             input = Some(mem::replace(&mut file, lock(&temporary, &name, inputs, readers)?));
         }
         let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite, _input: input };
-        // Another writer may have had the lock until now, and published the target.
+        // Another writer may have held the lock until now, and published the target.
         check(path, overwrite)?;
         output.file.set_len(0).map_err(failed)?;
         Ok(output)
@@ -174,7 +176,7 @@ fn unfinished(path: &Path) -> PathBuf {
     path.into()
 }
 
-/// Refuses an existing regular file without `--force`, unless it is the standard output.
+/// Fails for an existing regular file if `--force` is not set. The standard output may be an existing file.
 pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandError> {
     let exists = || fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
     if !overwrite.force && exists() && standard_output(path).is_none() {
@@ -183,8 +185,8 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
     Ok(())
 }
 
-/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. Opened by its path, a regular file
-/// would be written from its start.
+/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. To open the path instead would write a
+/// regular file from its start.
 #[cfg(unix)]
 fn standard_output(path: &Path) -> Option<File> {
     use std::os::fd::AsFd;
@@ -205,8 +207,7 @@ fn standard_output(_: &Path) -> Option<File> {
 fn lock(temporary: &Path, name: &Path, inputs: &[&Path], readers: Readers) -> Result<File, CommandError> {
     let failed = CommandError::write(name);
     for _ in 0..ATTEMPTS_MAX {
-        // A link or a pipe of this name is refused. Writing to a link could change another file, and a pipe could
-        // block.
+        // Fails for a link or a pipe of this name: writing to a link could change another file, and a pipe could block.
         if fs::symlink_metadata(temporary).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(failed(io::ErrorKind::AlreadyExists.into()));
         }
@@ -246,7 +247,7 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
     options.open(temporary)
 }
 
-/// Whether a temporary file has another name: that of its target or, on Unix, any.
+/// Whether a temporary file also has another name. On Unix, any name counts; elsewhere, only that of its target.
 #[cfg(unix)]
 fn is_published(file: &File, _: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt;

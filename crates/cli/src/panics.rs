@@ -11,7 +11,7 @@ use std::sync::Once;
 use crate::context::CommandResult;
 use crate::error::CommandError;
 
-/// Maximum number of characters kept from a panic message, which may quote the file.
+/// Maximum number of characters of a panic message. Longer messages are cut, because they may quote the file.
 const MESSAGE_CHARS_MAX: usize = 400;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +58,8 @@ pub(crate) fn played(ticks: u64) {
     TICKS.set(Some(ticks));
 }
 
-/// Calls `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
+/// Calls `work`. A panic is returned instead of printed. After a panic, the data that `work` was changing must not be
+/// used.
 pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);

@@ -34,7 +34,7 @@ pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 /// assert_eq!(game.world().body_count(), 10);
 /// ```
 pub trait Catalogue<G: Game> {
-    /// All scenes, in the order in which to list them.
+    /// All scenes, in the order in which `scenes` lists them.
     fn scenes(&self) -> Vec<SceneInfo>;
 
     /// Opens the scene of this name, if there is one. Calls with equal names and seeds must return equal scenes.

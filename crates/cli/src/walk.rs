@@ -42,7 +42,7 @@ pub struct Walk {
 
 struct Folder {
     path: PathBuf,
-    /// The next names in order. The value is whether the name is that of a folder.
+    /// The next names in order. The value tells whether the name belongs to a folder.
     names: BTreeMap<OsString, bool>,
     /// The last name that was returned.
     last: Option<OsString>,

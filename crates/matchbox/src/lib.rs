@@ -84,8 +84,8 @@ impl Matchbox {
         &self.others
     }
 
-    /// Whether the room is lost, because the signalling server was not reached or has ended. This peer would have to
-    /// enter again.
+    /// Whether the room is lost, because the signalling server was not reached or has ended. To return, this peer has
+    /// to enter the room again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.is_closed

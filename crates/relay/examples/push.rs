@@ -3,8 +3,9 @@
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
 //! The first player in the room opens the match. A bot provides the inputs. FILE is a replay of the sandbox, equal to
-//! that of a web page; a player who joined late has none. The program prints a line of JSON when it has entered the
-//! room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! the replay that a web page records. A player who joins late writes no replay. The program prints a line of JSON when
+//! it has entered the room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong
+//! arguments.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -86,7 +87,7 @@ impl Game for Push {
     }
     fn step(&mut self, inputs: &[u8]) {
         for command in self.commands(inputs) {
-            // No command is refused, because players are never removed.
+            // The world refuses no command, because players are never removed.
             let _ = self.world.execute(&command);
         }
         self.world.step();
@@ -123,7 +124,7 @@ struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// The secret of an identity as bytes. The relay makes the address from such a secret.
+/// The secret of an identity as bytes. The relay derives the address of a client from the client's secret.
 fn secret(me: &PeerIdentity) -> [u8; 16] {
     let mut bytes = [0; 16];
     for (to, from) in bytes.chunks_mut(8).zip(me.secret) {

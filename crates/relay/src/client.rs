@@ -84,7 +84,7 @@ enum State {
 }
 
 /// A member of a room of a relay. A lost connection is opened again in the background. Datagrams are lost in the
-/// meantime. A connection that is silent for 15 s, although [`Transport::receive`] is called, counts as lost.
+/// meantime. A connection counts as lost if nothing arrives for 15 s while the program calls [`Transport::receive`].
 ///
 /// ```no_run
 /// use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions};
@@ -122,7 +122,7 @@ impl Relay {
     /// connect, read or write takes at most 5 s.
     ///
     /// # Errors
-    /// [`RelayError`] when the URL is invalid, or the relay cannot be reached or refuses.
+    /// [`RelayError`] when the URL is invalid, or the relay cannot be reached or refuses the connection.
     pub fn connect(url: &str, code: &str, secret: [u8; SECRET_BYTES]) -> Result<Self, RelayError> {
         let host = url.strip_prefix("ws://").map(|host| host.trim_end_matches('/'));
         let wrong = || RelayError::Url { url: url.to_owned() };
@@ -221,7 +221,7 @@ impl Relay {
         match silence.due(Instant::now()) {
             Due::Nothing => {}
             Due::Ping => {
-                // An error of the connection is found by the next read.
+                // The next read returns an error of the connection.
                 let _ = socket.send(Message::Ping(tungstenite::Bytes::new()));
             }
             Due::Reconnect => self.reconnect(),
@@ -245,7 +245,7 @@ fn open(target: &Target, is_wanted: impl Fn() -> bool) -> Result<(Socket, Member
         .max_write_buffer_size(WRITE_MAX);
     let opened = client_with_config(&target.url, stream, Some(config));
     let (mut socket, _) = opened.map_err(|error| error.to_string())?;
-    // With the secret, this connection replaces an older one.
+    // Once the relay has the secret, this connection replaces an older one of the same member.
     if !is_wanted() {
         return Err("no longer wanted".to_owned());
     }

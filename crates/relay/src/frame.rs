@@ -11,8 +11,8 @@ pub(crate) const SECRET_BYTES: usize = 16;
 /// Address of a member of a room.
 pub(crate) type Member = [u8; ADDRESS_BYTES];
 
-/// A frame: an address and a datagram. To the relay, it is the address of the receiver; from the relay, that of the
-/// sender.
+/// A frame: an address and a datagram. A frame to the relay has the address of the receiver. A frame from the relay has
+/// the address of the sender.
 pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ADDRESS_BYTES + datagram.len());
     bytes.extend_from_slice(&member);

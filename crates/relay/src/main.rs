@@ -11,7 +11,7 @@ use serde_json::json;
 /// Forwards datagrams between the members of rooms over WebSockets. A client connects to ws://ADDRESS/CODE, where CODE
 /// is the code of its room.
 ///
-/// Exit codes: 0 ended by Ctrl-C or SIGTERM, 1 the address cannot be listened on, 2 wrong arguments.
+/// Exit codes: 0 ended by Ctrl-C or SIGTERM, 1 cannot listen on the address, 2 wrong arguments.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {

@@ -9,7 +9,7 @@ const PING_AFTER: Duration = Duration::from_secs(5);
 /// Time after a ping without an answer at which the connection counts as lost.
 const LOST_AFTER: Duration = Duration::from_secs(10);
 
-/// The time at which a connection was last heard.
+/// The time at which the last frame arrived on a connection.
 ///
 /// A connection is lost only if a ping remains unanswered. A program that has been suspended therefore keeps its
 /// connection.

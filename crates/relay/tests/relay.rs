@@ -154,7 +154,7 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
     });
 }
 
-/// Otherwise the old member's thread would replace the connection of a new member with its secret.
+/// If a dropped member connected again, its thread would replace the connection of a new member with the same secret.
 #[test]
 fn a_dropped_member_does_not_connect_again() {
     let server = Running::start(Limits::default());

@@ -31,7 +31,8 @@ pub fn glyph(character: char) -> Glyph {
     glyph
 }
 
-/// Returns a similar character for one that the font lacks. If there is none, returns the character itself.
+/// Returns a similar character for one that the font lacks. If there is no similar character, returns the character
+/// itself.
 fn nearest(character: char) -> char {
     match character {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',

@@ -44,8 +44,8 @@ fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
 }
 
 /// Compares every third pixel in each direction with the primitives. A pixel inside of exactly one polygon or circle
-/// must have its fill colour. A pixel outside of all of them must have that of the paper. Returns the numbers of pixels
-/// outside and inside.
+/// must have its fill colour. A pixel outside of all of them must have the colour of the paper. Returns the numbers of
+/// pixels outside and inside.
 fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32) -> [u32; 2] {
     let outlines = primitives(game.world(), Layers { outlines: true, ..Layers::NONE });
     let mut counts = [0, 0];

@@ -28,7 +28,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Creates an empty setup. Invalid settings are accepted here; the game refuses the setup.
+    /// Creates an empty setup. This function accepts invalid settings; the game refuses such a setup later.
     #[must_use]
     pub fn new(config: Config) -> Self {
         let world = World::new(config).unwrap_or_default();
@@ -67,7 +67,7 @@ impl Builder {
         }
     }
 
-    /// Adds a body at every position. All have the angle of the definition.
+    /// Adds a body at every position. All bodies have the angle of the definition.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses a body.
@@ -116,7 +116,7 @@ pub(super) fn build(
     builder.finish()
 }
 
-/// A rectangle with the given half extents.
+/// A rectangle with these half extents in metres.
 pub(super) fn rectangle(half_width: Fx, half_height: Fx) -> Result<ShapeDef, WorldError> {
     Ok(ShapeDef::new(Polygon::rectangle(half_width, half_height)?))
 }
@@ -130,7 +130,7 @@ pub(super) fn weightless() -> Config {
     Config { gravity: Vec2::ZERO, ..Config::default() }
 }
 
-/// Settings for measuring performance.
+/// Settings without sleeping, for measuring performance.
 pub(super) fn sleepless() -> Config {
     Config { sleeping: false, ..Config::default() }
 }

@@ -71,8 +71,7 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(store_state(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// Lowest bit of the body's user data: whether the character is on ground. The other bits are those of its upward
-/// speed.
+/// Lowest bit of the body's user data: whether the character is on ground. The other bits hold its upward speed.
 const ON_GROUND: u64 = 1;
 
 /// Reads the state of the character from the body and its user data.

@@ -65,7 +65,7 @@ fn mean_of(mut make: impl FnMut()) -> f64 {
     time.as_secs_f64() * 1e3 / f64::from(FRAMES)
 }
 
-/// CPU time of this thread, with a resolution of a few milliseconds. Only on Linux.
+/// CPU time of this thread, with a resolution of a few milliseconds. `None` on systems other than Linux.
 fn cpu_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split(' ').next()?.parse().ok().map(Duration::from_nanos)

@@ -30,8 +30,8 @@ pub enum Event {
 /// Key of the keyboard. A key that prints a character is named by that character in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Character that the key produces without Shift. On Windows and in a browser, the character at the place of the key
-    /// on a US keyboard, whatever its layout is.
+    /// Character that the key produces without Shift. On Windows and in a browser, the character at the place of the
+    /// key on a US keyboard, whatever the actual layout is.
     Character(char),
     /// The space bar.
     Space,

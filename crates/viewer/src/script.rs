@@ -82,7 +82,7 @@ impl Script {
         Ok(Script { steps })
     }
 
-    /// Instructions, in order.
+    /// Instructions, in the order in which they run.
     #[must_use]
     pub fn steps(&self) -> &[Step] {
         &self.steps

@@ -14,7 +14,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::submit::Names;
 
-/// Time for which a failing request is repeated. For NATS, the time is about as long.
+/// Time for which a failing request is repeated. Requests to NATS are repeated for about as long.
 const RETRY: Duration = Duration::from_secs(60);
 
 #[derive(Clone, Debug)]
@@ -33,8 +33,8 @@ impl Bucket {
         Ok(Bucket { url: url.clone(), store: PrefixStore::new(builder.build().map_err(&failed)?, folder) })
     }
 
-    /// Names of the replays in the folder `name`, or in the whole bucket if `name` is empty. If there are none,
-    /// `name` itself, if it is an object.
+    /// Names of the replays in the folder `name`, or in the whole bucket if `name` is empty. If there are no replays
+    /// and `name` is an object, `name` itself.
     pub(crate) async fn replays(&self, name: &str) -> Result<Names<'_>, WorkerError> {
         let path = self.path(name)?;
         let failed = WorkerError::bucket(&self.url);

@@ -15,7 +15,7 @@
 //! Invariants:
 //! - A job stays in the queue until its result is in the stream of results.
 //! - A file has at most one result under the same rules and limits, because the server refuses a second one.
-//! - A process has at most one file at work, so that a file that kills the process takes no other with it.
+//! - A process verifies one file at a time. A file that crashes the process therefore affects no other file.
 
 mod app;
 mod bucket;

@@ -17,13 +17,14 @@ use crate::app::Connection;
 use crate::error::WorkerError;
 use crate::job::Job;
 
-/// Time for which a job is recognised when it is submitted again.
+/// Time within which a job that is submitted again counts as a duplicate.
 const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 
 /// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Time for which the server keeps the place of a reader of results that asks for none, such as one with a pager.
+/// Time without requests after which the server deletes the consumer of a command `results`. A pager that stops the
+/// output also stops the requests.
 const RESULTS_KEPT: Duration = Duration::from_secs(10 * 60);
 
 /// Pauses between attempts. Together they last about a minute, in which a server can restart.
@@ -114,7 +115,7 @@ impl Queue {
             ack_policy: AckPolicy::Explicit,
             ack_wait,
             // The server delivers a job any number of times. Workers check the number of deliveries, so that a file
-            // that kills workers gets a result.
+            // that crashes workers gets a result, too.
             max_deliver: -1,
             // There is no limit here, because each worker has at most one unacknowledged job.
             max_ack_pending: -1,

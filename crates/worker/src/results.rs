@@ -28,7 +28,8 @@ pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -
         let most = if follow { BATCH } else { BATCH.min(usize::try_from(left).unwrap_or(BATCH)) };
         let batch = consumer.fetch().max_messages(most).expires(EXPIRES).messages();
         let batch = batch.await.map_err(WorkerError::nats("read the results"))?;
-        // The client drops messages of a batch that is read slowly, as by a pager.
+        // Collects the whole batch first. If a pager slowed down the reading of a batch, the client would drop messages
+        // of it.
         let received: Vec<_> = batch.collect().await;
         let before = left;
         for result in received {
@@ -40,7 +41,7 @@ pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -
         }
         out.flush().map_err(WorkerError::Output)?;
         if left == before && !follow {
-            // Results may have expired since they were counted. If the server is gone, this is an error.
+            // Results may have expired since they were counted. If the server is gone, this request fails.
             let info = consumer.info().await.map_err(WorkerError::nats("read the results"))?;
             left = left.min(info.num_pending);
         }

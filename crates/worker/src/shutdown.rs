@@ -40,7 +40,7 @@ impl Shutdown {
 
     pub(crate) async fn reached(&mut self, phase: Phase) {
         if self.0.wait_for(|now| *now >= phase).await.is_err() {
-            // The listener is gone only when the process ends.
+            // The task of the signals, which has the sender, ends only with the process.
             std::future::pending::<()>().await;
         }
     }

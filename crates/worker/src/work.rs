@@ -28,11 +28,11 @@ use crate::shutdown::{Phase, Shutdown};
 /// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the time of the client,
-/// after which a lost request looks like one without a job.
+/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the timeout of the client.
+/// After that timeout, a lost request would look like an empty queue.
 const LOST: Duration = Duration::from_secs(4);
 
-/// Time of failing requests after which a worker ends.
+/// A worker ends when all requests have failed for this time.
 const OUTAGE_MAX: Duration = Duration::from_secs(60);
 
 /// Pause before another attempt to read a file. It is multiplied by the number of deliveries so far.
@@ -131,7 +131,7 @@ async fn next(jobs: &PullConsumer) -> Result<Option<Message>, WorkerError> {
     result
 }
 
-/// The time since which all requests have failed, if the last one has.
+/// The time of the first failed request, if all later requests have failed, too.
 #[derive(Default)]
 struct Outage(Option<Instant>);
 
@@ -210,7 +210,8 @@ impl<G: Game + 'static> Work<G> {
             Err(_) => return Done::Again(READ_AGAIN * u32::try_from(delivered).unwrap_or(u32::MAX)),
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
-        // Results are matched with files by the digest, and only the beginning of a large file has been read.
+        // Users match results with files by the digest of the whole file. It cannot be computed here, because only the
+        // beginning of a large file has been read.
         let judged = tokio::task::spawn_blocking(move || judge.judge_part(&file, &bytes, &digest)).await;
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
@@ -243,7 +244,7 @@ async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// Result for a file that has been delivered too often. It is not read again.
+/// Result for a job that has been delivered too often. Its file is not read again.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

@@ -1,6 +1,6 @@
 //! A game with a mistake, for `docs/FUZZING.md`: two players walk over a field and pick fruit.
 //!
-//! A player that reaches for fruit gets the first one nearby. The fruit is in a `HashMap`, whose iteration order is
+//! A player that reaches for fruit gets the first piece nearby. The fruit is in a `HashMap`, whose iteration order is
 //! random.
 
 use lockstep2d::hash::StateHash;

@@ -93,7 +93,8 @@ impl MyGame {
         &self.rules
     }
 
-    /// Whether a player has won. In a match with rollback, it may only seem so: see `lockstep2d::peer::Peer::end_at`.
+    /// Whether a player has won. In a match with rollback, the last ticks are predictions, which may show a wrong
+    /// winner: see `lockstep2d::peer::Peer::end_at`.
     pub fn is_over(&self) -> bool {
         self.rules.goals.iter().any(|&goals| goals >= GOALS_TO_WIN)
     }
@@ -104,7 +105,7 @@ impl MyGame {
 
     fn push(&mut self, inputs: &[Input]) -> Result<(), WorldError> {
         for (player, input) in self.players.into_iter().zip(inputs) {
-            // An untrusted file may have any value.
+            // A replay from an untrusted source may contain any value.
             let axis = |value: i8| FORCE * Fx::from(value.signum());
             self.world.apply_force_to_centre(player, Vec2::new(axis(input.x), axis(input.y)))?;
         }
@@ -146,11 +147,11 @@ impl Game for MyGame {
 
     fn step(&mut self, inputs: &[Input]) {
         let pushed = if self.is_over() { Ok(()) } else { self.push(inputs) };
-        // The world advances in every tick, even if an input has been refused.
+        // The world advances in every tick, even if the world has refused an input.
         self.world.step();
         let judged = self.judge();
-        // An error is a defect of the rules, unless the state comes from an untrusted save. Every machine continues
-        // alike.
+        // An error is a defect of the rules, unless the state comes from an untrusted save. Every machine then
+        // continues in the same way.
         if let Err(error) = pushed.and(judged) {
             debug_assert!(false, "tick {}: {error}", self.world.tick());
         }

@@ -1,7 +1,7 @@
 //! Targets whose input is a file or packets.
 //!
-//! The first byte of an input selects how the other bytes make a file: they are its bytes, or they describe changes of
-//! an original file. The first byte also selects whether the checksums are repaired.
+//! The first byte of an input selects whether the other bytes are the file itself, or describe changes of an original
+//! file. It also selects whether the checksums of the file are repaired.
 
 pub mod replay;
 pub mod report;

@@ -57,14 +57,14 @@ pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsR
 /// Verifies a file and returns the name of the verdict.
 ///
 /// # Panics
-/// When a changed original matches, or a matching file is not what a recorder writes.
+/// When a changed original matches. Also when the inputs of a matching file, recorded again, give another file.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, forge::repair);
     let verdict = match judge::<Memory>(&attempt.file) {
         Verdict::Unverifiable { .. } => judge::<Sandbox>(&attempt.file),
         verdict => verdict,
     };
-    // A piece of a recording may make its truncated copy complete again.
+    // The change may have completed the truncated copy, so that it equals the original recording.
     let changed = attempt.original.is_some() && !ORIGINALS.contains(&attempt.file);
     assert!(!changed || !verdict.is_match(), "a changed file must not match");
     verdict.name()
@@ -90,7 +90,7 @@ fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     recording.finish().expect("a match")
 }
 
-/// The original files, for seeds. The last one is truncated.
+/// The original files, from which the tests write seeds. The last one is truncated.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

@@ -36,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory(false), memory(true), sandbox(false), sandbox(true)]
 });
 
-/// The reports of the peers that follow the rules.
+/// The two correct reports.
 static RIGHT: LazyLock<[Evidence; 2]> = LazyLock::new(|| {
     [0, 2].map(|at: usize| {
         Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report is valid")
@@ -69,7 +69,7 @@ fn report<G: Game>(
 /// Reads a file, compares it with a correct report, and returns the result as one word.
 ///
 /// # Panics
-/// When an accepted report has another encoding, or a side that followed the rules is blamed.
+/// When a decoded report encodes to other bytes, or when the comparison blames the side of the correct report.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     if let Ok(report) = DesyncReport::from_bytes(&attempt.file, &LIMITS) {
@@ -92,7 +92,7 @@ fn judge<G: Game>(left: &Evidence, right: &Evidence) -> Option<Blame> {
     Some(found.blame)
 }
 
-/// The valid files, for seeds.
+/// The valid files, from which the tests write seeds.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

@@ -43,7 +43,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
 /// Reads a world and, if it is valid, steps it at most twice. Returns whether it is valid.
 ///
 /// # Panics
-/// When an accepted world has another encoding, breaks an invariant, or depends on its caches.
+/// When a decoded world encodes to other bytes, breaks an invariant, or depends on its caches.
 pub fn run(bytes: &[u8]) -> bool {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     let Ok(mut world) = World::from_bytes(&attempt.file) else { return false };
@@ -62,7 +62,7 @@ pub fn run(bytes: &[u8]) -> bool {
     true
 }
 
-/// The valid files, for seeds.
+/// The valid files, from which the tests write seeds.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

@@ -56,7 +56,7 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Reorders vacant slots, or adds one. Its generations may be used up.
+    /// Swaps two vacant slots in the list, or adds one to it, or adds a slot whose generations are used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

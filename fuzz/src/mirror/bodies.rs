@@ -38,7 +38,7 @@ pub(super) struct Shape {
 }
 
 impl Body {
-    /// Clears motion, forces and target as kind, sleep and locks require.
+    /// Clears the velocities, forces and target that the kind, sleep and locks of the body do not allow.
     fn rest(&mut self) {
         if self.kind != BodyKind::Dynamic {
             (self.force, self.torque) = ((0, 0), 0);
@@ -109,7 +109,7 @@ impl State {
         self.weigh(index)
     }
 
-    /// Computes a body's mass, and the boxes of a fixed body's shapes, as a new world does.
+    /// Sets the mass of a body, and the fat AABBs of a fixed body's shapes, to those that a new world computes.
     pub(super) fn weigh(&mut self, index: usize) -> Option<()> {
         let body = self.bodies.get(index)?.clone();
         let shapes: Vec<_> =
@@ -149,7 +149,7 @@ impl State {
             8 => shape.def.events = fresh.events,
             9 => shape.def.material.surface_speed = Fx::from_bits(source.within(-(400 << 32), 400 << 32)),
             10 => {
-                // The new box has nothing to do with the shape.
+                // The new fat AABB is unrelated to the shape.
                 let (a, b) = (pair(source, i64::MIN, i64::MAX), pair(source, i64::MIN, i64::MAX));
                 shape.fat = Aabb::new(vector(a).min(vector(b)), vector(a).max(vector(b)));
             }

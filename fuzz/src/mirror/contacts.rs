@@ -133,7 +133,7 @@ impl State {
         Some(())
     }
 
-    /// Moves a contact from the active to the sleeping contacts or back, so that it is in the wrong list.
+    /// Moves an active contact to the sleeping contacts, or the other way, so that it is in the wrong list.
     fn alter_sleeping_contacts(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
             true => (&mut self.contacts, &mut self.sleeping_contacts),

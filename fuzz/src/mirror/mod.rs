@@ -1,4 +1,4 @@
-//! The layout of a world's state in `docs/FORMAT.md`, to change single fields of a snapshot.
+//! Repeats the layout of a world's state from `docs/FORMAT.md`, so that single fields of a snapshot can be changed.
 
 mod arena;
 mod bodies;
@@ -138,7 +138,7 @@ impl State {
         if source.one_in(2) {
             self.config.pair_limit = source.below(30) as u32;
         }
-        // The boxes of fixed shapes depend on the settings.
+        // The fat AABBs of fixed shapes depend on the settings.
         (0..self.bodies.slots.len()).try_for_each(|index| match self.bodies.get(index) {
             Some(_) => self.weigh(index),
             None => Some(()),

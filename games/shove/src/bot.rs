@@ -15,7 +15,7 @@ use crate::view::Player;
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// Distance from the edge, in metres. The bot turns back if it would be closer than this in 0.3 s.
+    /// Distance from the edge, in metres. The bot turns back if it would be closer to the edge in 0.3 s.
     caution: Fx,
     pad: Pad,
     /// Number of ticks for which the bot keeps its pad.

@@ -97,7 +97,7 @@ impl Shove {
         }
     }
 
-    /// Stops at the first change that the world refuses. This may happen after an untrusted save was loaded.
+    /// Stops at the first change that the world refuses. The world may refuse one after an untrusted save was loaded.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {
@@ -136,7 +136,7 @@ impl Game for Shove {
             self.rules.seat(&mut self.world, seat, present);
         }
         let pads = &inputs[..inputs.len().min(self.seats())];
-        // Every machine stops at the same refused change.
+        // The error can be ignored, because every machine stops at the same refused change.
         let _ = self.try_step(pads);
         self.world.step();
         self.charge();
@@ -166,9 +166,9 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// The limits of bodies and shapes plus the numbers of pairs and joints, times the iterations of the solver. The
-    /// square of the limit of shapes is added for new pairs. The limits count because a new round may add all players
-    /// and crates.
+    /// The limits of bodies and shapes plus the numbers of pairs and joints, times the iterations of the solver in a
+    /// tick. The square of the limit of shapes is added for new pairs. Limits are used instead of current numbers,
+    /// because a new round may add all players and crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

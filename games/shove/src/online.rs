@@ -117,7 +117,7 @@ fn resolve(address: &str) -> Result<SocketAddr, OnlineError> {
     found.next().ok_or_else(|| error(None))
 }
 
-/// Plays all ticks that are due. `pad` returns the local player's pad for a game and the local seat.
+/// Plays all ticks that are due. `pad` returns the local player's pad, given the game and the local seat.
 ///
 /// # Errors
 /// [`PeerError`] if the match cannot continue.

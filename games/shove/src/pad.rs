@@ -26,7 +26,7 @@ impl Pad {
     pub const DOWN: Pad = Pad(1 << 3);
     /// Dash: an impulse in the held direction.
     pub const DASH: Pad = Pad(1 << 4);
-    /// The input of an empty seat. Bit 7 with any other bit is ignored.
+    /// The input of an empty seat. If other bits are set, too, bit 7 is ignored.
     pub const ABSENT: Pad = Pad(1 << 7);
 
     /// Pads of the eight directions, counter-clockwise from +x.

@@ -90,7 +90,7 @@ impl Rules {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// Sets whether the player of a seat is present. A player who leaves loses its body, which is not a fall. A player
+    /// Sets whether the player of a seat is present. A player who leaves loses its body, but does not fall. A player
     /// who joins gets a body in the next round, which begins at once if the current round is practice.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
@@ -175,7 +175,7 @@ impl Rules {
     }
 
     /// Clears the bodies in the seats of fallen players. In a round, each player still standing gets a point for each
-    /// of them.
+    /// fallen player.
     pub(crate) fn fall(&mut self, fallen: &[u8]) {
         for &seat in fallen {
             if let Some(seat) = self.seats.get_mut(usize::from(seat)) {

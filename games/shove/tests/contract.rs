@@ -187,7 +187,7 @@ fn missing_and_surplus_pads_are_no_trouble() {
     assert_eq!(game.state_hash(), other.state_hash());
 }
 
-/// Checks pads of bots and random pads.
+/// Runs `check` on pads of bots and on random pads.
 #[test]
 fn every_way_to_play_comes_to_the_same() {
     for setup in setups() {

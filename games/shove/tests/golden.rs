@@ -1,4 +1,4 @@
-//! The committed matches verify, end in their hashes, and equal a new recording of their bots.
+//! The committed matches verify and end in the committed hashes. New recordings of their bots give the same files.
 
 use std::fs;
 use std::path::{Path, PathBuf};

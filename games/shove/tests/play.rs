@@ -1,5 +1,5 @@
-//! Matches between processes over UDP: all peers end in the same state, and their replays verify. A whole match takes
-//! as long as in reality and needs a machine that keeps up, so only `.ci/run` runs whole matches.
+//! Matches between processes over UDP: all peers end in the same state, and their replays verify. A whole match runs
+//! in real time and needs a machine that keeps up, so only `.ci/run` runs whole matches.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -83,7 +83,7 @@ fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     children
 }
 
-/// Pads of each tick of a replay, which may end in the middle.
+/// Pads of each tick of a replay, which may be truncated.
 fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     let mut pads = Vec::new();
     let mut reader = Reader::open(replay, &Limits::default()).unwrap();
@@ -179,7 +179,7 @@ fn another_seed_or_number_of_seats_is_another_match() {
     }
 }
 
-/// A missing or taken seat is refused, and so is an impossible number of players.
+/// A process exits with an error if its seat does not exist or is taken, or if the number of players is impossible.
 #[test]
 fn wrong_seats_are_refused() {
     let folder = Folder::new("seats");

@@ -33,7 +33,7 @@ struct Vacancies {
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// Digest of the vacancies, then of each page, so that reading the digests does not visit the pages.
+    /// Digest of the vacancies, then of each page. They are stored here so that reading them does not visit the pages.
     digests: Vec<StateHash>,
 }
 
@@ -130,13 +130,13 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Counter for caches of the fields that every step changes. It grows with each restore, after which the caller of
-    /// [`Arena::restore`] sets those fields, and with each call of [`Arena::note_change`].
+    /// Counter for caches of the fields that every step changes. It grows with each call of [`Arena::note_change`] and
+    /// of [`Arena::restore`], whose caller then sets those fields.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }
 
-    /// Tells caches that fields which every step changes have changed outside of a step.
+    /// Invalidates caches of the fields that every step changes, after a change outside of a step.
     pub(crate) fn note_change(&mut self) {
         self.kept.returns += 1;
     }

@@ -22,14 +22,15 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The line for `2 A'` is J. Steiner's formula (1840). Terms along the normals cancel around the outline.
+//! The line for `2 A'` is J. Steiner's formula (1840). `2 m` has no terms along the edge normals, because they cancel
+//! around the outline.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
 /// Moments of a region of uniform density.
 ///
-/// At an extent of 110 m, `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below 2^30 m⁴, with 44, 32 and 88
-/// fraction bits, so that sums do not overflow.
+/// Sums do not overflow: at an extent of 110 m, `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below 2^30 m⁴, with
+/// 44, 32 and 88 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Figure {
     /// In m², with 44 fraction bits.
@@ -117,7 +118,7 @@ impl Figure {
     }
 }
 
-/// Angle by which an outline turns at a vertex. All such angles of an outline sum to one turn.
+/// Angle by which an outline turns at a vertex. The angles at all vertices sum to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
     // Exact: edges are at most 220 m long on each axis, so a sum of two products has at most 61 bits.

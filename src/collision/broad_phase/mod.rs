@@ -1,5 +1,5 @@
-//! Broad phase: pairs of overlapping fat AABBs. The implementations return the same pairs in sorted order, so the data
-//! structure is a cache, not state.
+//! Broad phase: pairs of overlapping fat AABBs. All implementations return the same pairs in sorted order, so their
+//! data structures are caches and not part of the state.
 
 mod box_list;
 mod search;
@@ -51,14 +51,14 @@ pub enum BroadPhaseKind {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moved<'a> {
     All,
-    /// Pairs with at least one box in these slots, which may repeat or be vacant.
+    /// Pairs with at least one box in these slots. Slots may repeat or be vacant.
     Slots(&'a [u32]),
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct BroadPhase {
     structure: Structure,
-    /// By slot, for lookups within a tick.
+    /// Box of each slot, for lookups within a tick.
     boxes: Vec<Aabb>,
     /// For each slot, whether its body is fixed.
     fixed: Vec<bool>,
@@ -129,7 +129,7 @@ impl BroadPhase {
         }
     }
 
-    /// Sets the class of a slot that has a box. Results may leave out pairs within one class.
+    /// Sets the collision class of a slot that has a box. Results may leave out pairs within one class.
     pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
         if let Structure::Trees(trees) = &mut self.structure {
             trees.set_collision_class(slot, class);
@@ -157,7 +157,7 @@ impl BroadPhase {
     }
 
     /// Replaces all boxes, and clears their collision classes. An item is a slot, its box, and whether its body is
-    /// fixed. The last box of a repeated slot is kept.
+    /// fixed. If a slot repeats, its last box counts.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -208,7 +208,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking slots pays off only if they are fewer than half of the moving boxes.
+                    // Marking pays off only if the marked slots are fewer than half of the moving boxes.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }
@@ -223,7 +223,7 @@ impl BroadPhase {
 
     /// Largest number of pairs of boxes that [`BroadPhase::pairs`] compares.
     pub(crate) fn comparisons(&self, moved: Moved<'_>) -> u64 {
-        // Below 2^21 boxes, so that no product overflows.
+        // A world has fewer than 2^21 boxes, so no product overflows.
         let all = |boxes: &BoxList| (boxes.len() as u64).pow(2) / 2;
         let trees = match &self.structure {
             Structure::Trees(trees) => trees,
@@ -255,7 +255,7 @@ impl BroadPhase {
         self.search(Overlap { area, visit });
     }
 
-    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies, or for those of all others.
+    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies, or for the boxes of all other bodies.
     pub(crate) fn each_overlap_of(
         &self,
         fixed: bool,
@@ -271,9 +271,9 @@ impl BroadPhase {
         });
     }
 
-    /// Visits every slot whose box the area touches while it moves, and perhaps some that it just misses. Nearer boxes
-    /// tend to come first. `visit` returns the largest fraction of the translation that is still of interest, and 0
-    /// ends the search.
+    /// Visits every slot whose box the moving area touches, and perhaps some whose box the area just misses. Nearer
+    /// boxes tend to come first. `visit` returns the largest fraction of the translation that is still of interest, and
+    /// 0 ends the search.
     pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
         self.search(Along::new(area, translation, visit));
     }
@@ -326,7 +326,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims rarely, so that the cost of a sort is amortised over many pushes.
+        // Trims rarely, to amortise the cost of a sort over many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

@@ -1,6 +1,6 @@
 //! Searches over boxes. A tree skips subtrees that a search does not reach, and the reach may shrink as results are
-//! found. [`Search::reaches`] may accept a box that is a few units of the last place out of reach, but does not reject
-//! a box within reach.
+//! found. [`Search::reaches`] accepts every box within reach, and may accept a box that is a few units of the last
+//! place out of reach.
 
 use core::ops::ControlFlow;
 
@@ -48,8 +48,8 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         Along { area, translation, fraction: Unit::ONE, around, visit }
     }
 
-    /// Separating axis test perpendicular to the translation `d`: the line `t d` meets the Minkowski difference of the
-    /// boxes unless `d x p` has the same sign for all corners `p` of the difference.
+    /// Separating axis test perpendicular to the translation `d`: the line `t d` misses the Minkowski difference of the
+    /// boxes if `d x p` has the same sign for all corners `p` of the difference.
     fn strip_meets(&self, aabb: Aabb) -> bool {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
@@ -93,7 +93,8 @@ impl<F: FnMut(u32) -> Unit> Search for Along<F> {
     }
 }
 
-/// Coordinates at a quarter of the resolution, rounded down: differences fit 64 bits, and sums of their products 128.
+/// Coordinates at a quarter of the resolution, rounded down: differences fit 64 bits, and sums of products of
+/// differences fit 128 bits.
 fn coarse(point: Vec2<Fx>) -> (i64, i64) {
     (point.x.to_bits() >> 2, point.y.to_bits() >> 2)
 }
@@ -127,8 +128,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // The radius `Fx::MAX` reaches every box, because distances saturate there. With a smaller radius, each
-        // distance is below 2^63 when the squares are added, so that the sum fits.
+        // The radius `Fx::MAX` reaches every box, because distances saturate there. With a smaller radius, the squares
+        // are added only if each distance is below 2^63, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

@@ -150,7 +150,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 }
                 _ => {}
             }
-            // Even rounds move few boxes, which the tree marks, and odd rounds many.
+            // Even rounds move few boxes, so that the tree marks their slots. Odd rounds move many boxes.
             if rng.below(if round % 2 == 0 { 40 } else { 4 }) == 0 {
                 moved.extend([rng.below(150), rng.below(150)]);
                 moved.push(moved[0]);
@@ -312,7 +312,7 @@ fn the_closest_hit_is_found_while_the_way_shrinks() {
         for _ in 0..200 {
             let area = Aabb::from_points([random_vector(&mut rng, world)]).expect("a point");
             let translation = random_vector(&mut rng, world);
-            // Rounded up to the next unit, so that no hit is cut off.
+            // Rounds up to the next unit, so that the search does not cut off a hit.
             let fraction_of = |fat: Aabb| {
                 let (n, d) = first_touch(area, translation, fat)?;
                 let bits = (n << Unit::FRAC_NBITS).div_euclid(d) + 1;
@@ -349,7 +349,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // In units of 2^-31 m, so that the square of a distance fits 128 bits, and rounded up.
+        // The root is in units of 2^-31 m, so that the square of a distance fits 128 bits, and is rounded up.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };

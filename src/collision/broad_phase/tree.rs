@@ -5,9 +5,10 @@
 //! the way back up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in Box2D v3.
 //! Nested boxes would make a chain of nodes, so the heights of siblings differ by at most [`IMBALANCE_MAX`], as in a
 //! relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962): an insertion or removal changes heights by one, and one
-//! exchange on each level restores the balance.
+//! exchange of nodes on each level restores the balance.
 //!
-//! A box that moves a little enlarges its ancestors. Moving many boxes refits or rebuilds the tree (`rebuild.rs`).
+//! A box that moves a little only enlarges its ancestors. Moving many boxes at once refits or rebuilds the tree
+//! (`rebuild.rs`).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -27,7 +28,7 @@ mod tests;
 const NONE: u32 = u32::MAX;
 
 /// Largest difference of the heights of two siblings. A large value lets a long ground box stay near the root. With 4,
-/// it takes several times as long to find the pairs of 10 000 boxes on some long ground boxes.
+/// finding the pairs of 10 000 boxes on some long ground boxes takes several times as long.
 const IMBALANCE_MAX: u8 = 16;
 
 /// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes.
@@ -45,8 +46,8 @@ pub(crate) struct Tree {
     /// Number of leaves inserted or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
-    /// Number of moves since the last refit or rebuild that took a leaf out of its neighbourhood without relinking it:
-    /// see [`Tree::stays_near`].
+    /// Number of moves since the last refit or rebuild that left a leaf misplaced: out of its neighbourhood, but not
+    /// relinked. See [`Tree::stays_near`].
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -59,7 +60,7 @@ pub(super) struct Node {
     height: u8,
     /// Class of a leaf, or the common class of the leaves below.
     class: CollisionClass,
-    /// Whether pairs of this leaf, or of a leaf below, are requested.
+    /// Whether the current search wants the pairs of this leaf or of a leaf below.
     pub(super) marked: bool,
     /// Children. For a leaf, its slot and [`NONE`].
     children: [u32; 2],
@@ -89,7 +90,8 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // Relinking few misplaced leaves would take the nodes out of the storage order that makes a refit fast.
+            // Enlarges the ancestors of a few misplaced leaves. Relinking the leaves would lose the storage order that
+            // makes a refit fast.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -177,7 +179,8 @@ impl Tree {
         boxes
     }
 
-    /// Sets the box of a leaf, and enlarges its ancestors to contain the box. They shrink in the next refit or rebuild.
+    /// Sets the box of a leaf, and enlarges its ancestors to contain the box. The next refit or rebuild shrinks the
+    /// ancestors.
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;
@@ -221,8 +224,8 @@ impl Tree {
     }
 
     /// The sibling with which a new leaf adds the least perimeter to the new parent and the ancestors. The search
-    /// descends to the child with the smaller lower bound of this cost. It ends if the bound exceeds the best cost and
-    /// the best node is low enough to have a leaf as its sibling.
+    /// descends to the child with the smaller lower bound of this cost. The search ends when the bound exceeds the best
+    /// cost, provided that the best node is low enough to have a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;
@@ -261,7 +264,7 @@ impl Tree {
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
 
-    /// Updates ancestors until one does not change.
+    /// Updates ancestors, up to the first one that does not change.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
             let Node { aabb, height, class, parent, .. } = *self.at(at);

@@ -1,5 +1,5 @@
 //! Two trees, one for fixed bodies and one for others. The tree of fixed bodies stays unchanged while other bodies
-//! move, and pairs of fixed bodies are not searched for.
+//! move, and no search looks for pairs of fixed bodies.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

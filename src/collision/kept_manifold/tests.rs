@@ -67,7 +67,8 @@ fn separations_follow_the_bodies() {
                 continue;
             };
             let error = separation.dist(point.separation);
-            // The normal turns by up to 0.0006 rad, and so does the edge along which the end of the overlap moves.
+            // The normal turns by up to 0.0006 rad, as does the edge along which a point at the end of the overlap
+            // moves.
             assert!(error < Step::lit("0.000007"), "{separation} instead of {}", point.separation);
             kept_points += 1;
         }
@@ -105,7 +106,7 @@ fn a_manifold_is_kept_up_to_the_limit() {
     }
 }
 
-/// The centre of mass of a fixed body may be so far away that the lever arm is out of range.
+/// The centre of mass of a fixed body may be so far away that the lever arm exceeds the range of `Length` and wraps.
 #[test]
 fn a_level_may_be_far_from_its_origin() {
     for far in [fx!(0), fx!(511.9), fx!(700), fx!(123456.789)] {

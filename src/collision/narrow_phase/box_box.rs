@@ -1,4 +1,4 @@
-//! Box against box, [`WIDTH`] pairs at a time with SIMD. A manifold that has points equals that of
+//! Box against box, [`WIDTH`] pairs at a time with SIMD. A manifold with points equals the manifold of
 //! [`hull_hull`](super::hull_hull) bit for bit. Pairs with the incident edge beside the reference face, or with two
 //! corners as nearest features, are left to the scalar path.
 
@@ -29,7 +29,7 @@ const MARGIN_MAX: Length = Length::lit("2");
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
     turned: Vec<Turned>,
-    /// In the frame of the body, for boxes whose centre is their body's centre of mass.
+    /// Faces in the frame of the body, for boxes whose centre is their body's centre of mass.
     centred: Vec<Option<Faces>>,
 }
 

@@ -11,7 +11,7 @@ use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 /// `centre` is the circle's centre relative to the hull's.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
     let radii = step_bits(radius) + step_bits(hull.radius);
-    // Not saturated: for a large shape only the difference of the distance and the radii fits `Step`.
+    // Distances are not saturated: for a large shape, only the difference of the distance and the radii fits `Step`.
     let Face { edge, separation } = hull_hull::face_before(hull, centre);
     let face_distance = round_shift(separation, FACE_BITS - Step::FRAC_NBITS);
     if face_distance - radii > step_bits(margin) {
@@ -30,7 +30,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // Beyond the end of a segment, the distance from both faces is 0, or slightly less by rounding.
+        // In line with a segment, beyond its end, the distance from both faces is 0, or slightly negative by rounding.
         Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));

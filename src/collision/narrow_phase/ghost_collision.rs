@@ -1,14 +1,15 @@
 //! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
 //!
 //! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor also gives a plane,
-//! which would stop a sliding shape. Along a fixed axis `m` the separation of two shapes that do not rotate is
+//! which would stop a sliding shape. Along a fixed axis `m`, the separation of two shapes with the relative velocity
+//! `v` that do not rotate is
 //!
 //! ```text
 //! s(t) = s(0) + m.v t
 //! ```
 //!
 //! so an axis that separates the shapes at both ends of a tick separates them throughout (D. Eberly, "Intersection of
-//! Convex Objects: The Method of Separating Axes", 2001). The face normals of both shapes are tried.
+//! Convex Objects: The Method of Separating Axes", 2001). The filter tries the face normals of both shapes.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{FACE_BITS, face_separation};
@@ -18,22 +19,24 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
 /// Cosine between a face normal and the contact normal above which the contact is on that face.
 const SAME: Unit = Unit::lit("0.999999");
-/// Cosine (of 26 degrees) above which a face counts as the contact's own, if the contact is on a face.
+/// Cosine (of 26 degrees) to the contact normal above which the filter does not test a face, if the contact is on a
+/// face.
 const OWN: Unit = Unit::lit("0.9");
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GhostFilter {
     /// Displacement of B relative to A, in metres.
     pub(crate) shift: Vec2<Length>,
-    /// Largest displacement of a point by rotation.
+    /// Largest displacement in metres of a point by rotation.
     pub(crate) turn: Length,
-    /// Overlap in metres that may be left to the next tick.
+    /// Overlap in metres that the filter tolerates and leaves to the next tick.
     pub(crate) slack: Length,
     /// Largest approach along the axis in metres: a shape that falls onto a face does not pass by.
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// Faces with a larger cosine to the contact normal are not tested: the shapes touch there and do not pass by.
+    /// The filter does not test faces with a larger cosine to the contact normal: the shapes touch there and do not
+    /// pass by.
     own: Unit,
 }
 
@@ -106,7 +109,7 @@ fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) ->
         if nearest < -step_bits(filter.slack) {
             return false;
         }
-        // The slack must not exceed a quarter of the width of a thin outline.
+        // For a thin outline, the slack is at most a quarter of the outline's width.
         let widths = [a, b].map(|hull| width(hull, normal) / 4).into_iter().filter(|&width| width > 0);
         nearest >= -widths.fold(step_bits(filter.slack), i64::min)
     })

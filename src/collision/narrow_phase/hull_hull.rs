@@ -39,7 +39,7 @@ pub(crate) struct SatCounters {
     pub(crate) searches: u32,
 }
 
-/// Cosine of 2.6 degrees, up to which two faces count as parallel, as a product of two [`Unit`] numbers. If the
+/// Cosine of 2.6 degrees, as a product of two [`Unit`] numbers. Two faces within this angle count as parallel. If the
 /// reference face alternated between rounded outlines, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
@@ -62,7 +62,7 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let from_cache = match *cached_axis {
-        // The SIMD path has no cached axes. Ignoring them here too keeps the counters equal.
+        // The SIMD path has no cached axes. Ignoring them here too gives equal counters on all machines.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -133,7 +133,7 @@ pub(in crate::collision) fn are_apart(
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// Whether `a` is a line and `b` is beyond one of its ends, at which a line has no faces.
+/// Whether `a` is a line and `b` is beyond one of its ends. A line has no faces at its ends.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();

@@ -23,8 +23,8 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, convert, saturate};
 /// Sine of the angle (0.6 degrees) below which convex vertices count as flat.
 const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
 
-/// Sine of the largest angle at which a face normal counts as the link's own. With a larger value, every vertex would
-/// push back the rounded boxes that slide along the chain.
+/// Sine of the largest angle between a face normal and the link's normal at which the two count as equal. With a larger
+/// value, every vertex would push back the rounded boxes that slide along the chain.
 const PARALLEL: Unit = Unit::lit("0.0002");
 
 #[derive(Clone, Copy, Debug)]
@@ -41,13 +41,13 @@ enum Turn {
     Concave,
 }
 
-/// Decision on a candidate normal: the one that the link and the shape would have without the rest of the chain.
+/// Decision on a candidate normal, which is the contact normal of the link and the shape without the rest of the chain.
 enum Verdict {
-    /// The link pushes along it.
+    /// The link pushes along the candidate normal.
     Own,
-    /// The chain allows it, but a neighbour pushes along it.
+    /// The chain allows the candidate normal, but a neighbour pushes along it.
     Neighbour,
-    /// It does not belong to this link.
+    /// The candidate normal does not belong to this link.
     Leave,
     /// The link pushes along its own normal instead.
     Snap,
@@ -65,8 +65,8 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// Orients a link towards the point `place` in the other shape, relative to the centre of that shape. `None` if the
-    /// link is far away or not solid from this side.
+    /// Orients a link towards the point `place` in the other shape. `place` is relative to the centre of the other
+    /// shape. `None` if the link is far away or not solid from this side.
     pub(crate) fn new(link: &Link, centre: Vec2<Fx>, place: Vec2<Fx>) -> Option<Self> {
         let link = match (link.has_on_right(centre + place), link.sides) {
             (true, _) => *link,
@@ -92,7 +92,7 @@ impl Facing {
         })
     }
 
-    /// Decides on the normal that the shape and the link would have without the rest of the chain.
+    /// Decides on the contact normal that the shape and the link would have without the rest of the chain.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
@@ -143,7 +143,7 @@ impl Facing {
             single((-vertex).normalized().unwrap_or(self.normal), distance, radius, margin)
         };
         let beside = || single(self.normal, distance_along(self.normal, -a), radius, margin);
-        // Inside a concave vertex the other link is nearer, but a fast circle may reach this one within the tick.
+        // Inside a concave vertex, the other link is nearer, but a fast circle may reach this link within the tick.
         let ahead = |vertex: Vec2<Length>| {
             let near = step_bits(vertex.length()) - step_bits(radius) <= step_bits(margin);
             let contact = beside();
@@ -187,7 +187,7 @@ impl Facing {
         Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
     }
 
-    /// Contact at the nearest features of separate outlines, if the chain allows their normal.
+    /// Contact at the nearest features of separate outlines, if the chain allows the normal between them.
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
         let found = if hull_hull::is_reference_of_b(a, b, face_a, face_b, true) {

@@ -29,7 +29,8 @@ const REJECT_SLACK: Fx = fx!(0.001);
 /// Largest speculative margin in metres, within the range of a separation (16 m).
 const MARGIN_MAX: Length = Length::lit("15");
 
-/// Speculative margin of a pair in metres. `closing` is the possible approach in the tick in metres.
+/// Speculative margin of a pair in metres. `closing` is the distance in metres by which the shapes may approach in the
+/// tick.
 #[inline]
 pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
     speculative.saturating_add(convert(closing)).min(MARGIN_MAX)
@@ -66,7 +67,8 @@ pub(crate) fn collide_near(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Anchors are relative to the polygon for a circle and a polygon, and to the other shape for a segment or link.
+    // Anchors are relative to the centre of A. For a circle and a polygon, they are relative to the polygon instead,
+    // and for a segment or link, to the other shape.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {
@@ -116,7 +118,7 @@ pub(crate) fn collide_near(
             let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
             facing.collide_hull(hull_a, margin).swapped()
         }
-        // Nothing determines on which side of each other two lines should be.
+        // Two lines do not collide, because neither has an inside from which it could push the other out.
         (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     };
     manifold.origin = origin;
@@ -129,7 +131,7 @@ fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     segment::near_hull(a, b, other.centre - segment.centre)
 }
 
-/// A link relative to the centre of the other shape, oriented towards a point in that shape.
+/// A link relative to the centre of the other shape, oriented towards the point `place` in the other shape.
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
     Facing::new(&posed, other.centre - link.centre, place)

@@ -28,7 +28,7 @@ pub(crate) fn pass_direction(angle: Angle) -> Vec2<Unit> {
     Rot::from_angle(angle).apply(Vec2::X)
 }
 
-/// Whether a platform is open to a shape that touches it with this normal, which points to the shape.
+/// Whether a platform lets a touching shape pass. The contact normal points from the platform to the shape.
 pub(crate) fn is_open(pass_direction: Vec2<Unit>, normal: Vec2<Unit>) -> bool {
     let upright: Unit = normal.dot(pass_direction);
     upright < Unit::lit("0.5")
@@ -54,7 +54,7 @@ impl OneWay<'_> {
         is_open(self.direction, manifold.normal)
     }
 
-    /// Separation of the shapes along the pass direction. Negative until the other shape is fully through.
+    /// Separation of the shapes along the pass direction. Negative until the other shape has passed completely.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);

@@ -1,11 +1,12 @@
-//! Segments may be as long as the world. The part in a window around the other shape is clipped in 64 bits. It becomes
-//! an outline of two opposite faces, in 32-bit coordinates relative to the centre of the other shape.
+//! Segments may be as long as the world. This module clips a segment, in 64 bits, to a window around the other shape.
+//! The clipped part becomes an outline of two opposite faces, in 32-bit coordinates relative to the centre of the other
+//! shape.
 
 use crate::collision::shape::posed::Hull;
 use crate::fx;
 use crate::math::{Fx, Vec2, div_round, saturate_wide};
 
-/// Half the side of the window in metres: more than the extent of any shape plus the largest margin (171 m), and little
+/// Half the side of the window in metres: more than the extent of any shape plus the largest margin (171 m), but small
 /// enough that relative coordinates, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
@@ -60,7 +61,7 @@ fn clip_to_half_plane(
     }
 }
 
-/// Zero of a linear function, with `at_p > 0 >= at_q`.
+/// Point between `p` and `q` at which a linear function is 0. Its values at the ends are `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
     // The longest line has 2^63.5 units, so that the product hardly saturates.
     let part = |p: Fx, q: Fx| {

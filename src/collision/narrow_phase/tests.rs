@@ -100,7 +100,7 @@ fn distance(a: &[Vec2<Fx>], b: &[Vec2<Fx>]) -> Fx {
     from(a, b).min(from(b, a))
 }
 
-/// Compared with brute force in 64 bits. Skips outlines that cross or are within 0.5 mm of each other.
+/// Compares the separation with brute force in 64 bits. Skips outlines that cross or are within 0.5 mm of each other.
 #[test]
 fn separation_is_the_distance_of_outlines_that_are_apart() {
     let mut rng = Rng::new(2);
@@ -136,7 +136,7 @@ fn separation_is_the_distance_of_outlines_that_are_apart() {
     );
 }
 
-/// No face is a separating axis.
+/// No face normal of these shapes is a separating axis.
 #[test]
 fn shapes_in_line_are_apart_and_pushed_along_the_line() {
     let pill = || Geometry::capsule(Vec2::new(fx!(-1), fx!(0)), Vec2::new(fx!(1), fx!(0)), fx!(0.5)).unwrap();

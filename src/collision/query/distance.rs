@@ -1,7 +1,7 @@
-//! Distance of two cores, which are shapes without their radii: the point of `B - A` nearest to the origin, by GJK (E.
-//! Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
+//! Distance of two cores, which are shapes without their radii. GJK finds the point of `B - A` nearest to the origin
+//! (E. Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
 //!
-//! In two dimensions a search direction is a vertex or the perpendicular of an edge, which needs no rounding. With
+//! In two dimensions, a search direction is a vertex or the perpendicular of an edge, and neither needs rounding. With
 //! exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle. The separating
 //! axis test gives the depth of overlapping cores.
 
@@ -174,7 +174,7 @@ fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
         let point_b = point - scaled(normal, separation);
         keep(Axis { separation, normal: -normal, point_a: point, point_b });
     }
-    // Two coincident points have no face.
+    // If both cores are points, there are no faces.
     best.unwrap_or(Axis { separation: Grid::ZERO, normal: Vec2::Y, point_a: shared, point_b: shared })
 }
 

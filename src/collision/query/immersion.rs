@@ -1,11 +1,11 @@
 //! The part of a convex shape that is inside another convex shape: the area and the centre of that part.
 //!
-//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. The edges of one ring cut
-//! the other ring in turn (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded to
-//! 2^-32. Areas and centres are exact sums, each rounded once.
+//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. Each edge of one ring in
+//! turn cuts the other ring (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
+//! to 2^-32. Areas and centres are exact sums, each rounded once.
 //!
-//! Rounded outlines have a corner in each of 32 directions, so far out that a disc keeps its area. They are off by up
-//! to 0.4 % of the radius for a disc, and 1.7 % along a straight edge.
+//! The ring of a rounded outline has a corner in each of 32 directions, at such a distance that the ring of a disc has
+//! the area of the disc. The outline is off by up to 0.4 % of the radius for a disc, and 1.7 % along a straight edge.
 
 use smallvec::SmallVec;
 
@@ -94,7 +94,7 @@ impl Ring {
             return;
         }
         let mut left = SmallVec::new();
-        // The edge back to the first point closes a ring, but not a line.
+        // A ring has an edge from its last point back to its first, but a line does not.
         let is_line = points.len() == 2;
         for (index, &point) in points.iter().enumerate() {
             let next = points[(index + 1) % points.len()];
@@ -110,7 +110,7 @@ impl Ring {
         *points = left;
     }
 
-    /// Size and centre of the ring. `None` if nothing is left.
+    /// Size and centre of the ring. `None` if no area or length is left.
     pub(crate) fn extent(&self) -> Option<Extent> {
         let Ring(points) = self;
         let (&first, rest) = points.split_first()?;

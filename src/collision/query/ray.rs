@@ -3,8 +3,8 @@
 //! The outline of a core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about its
 //! vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`. The ray
 //! enters a circle about `p` half a chord before the ray's nearest point to `p`. Products are exact. `|e|` and `|d|`
-//! have a relative error of 1.5e-9, but they only affect lengths up to the radius. Rays and segments may therefore be
-//! as long as the world.
+//! have a relative error of 1.5e-9, but this error only affects lengths up to the radius. Rays and segments may
+//! therefore be as long as the world.
 
 #[cfg(test)]
 mod tests;
@@ -37,7 +37,7 @@ pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
         return Some(RayHit { fraction, order, point: origin, normal: Vec2::ZERO });
     }
-    // Both ends are rounded to the grid, so that a ray from the end of another ray starts exactly there.
+    // Rounds both ends to the grid, so that a ray from the end of another ray starts exactly at this end.
     let end = to_grid(origin + translation);
     let origin = to_grid(origin);
     let translation = end - origin;
@@ -59,11 +59,12 @@ pub(in crate::collision) fn entry(
     d: Vec2<Grid>,
 ) -> Option<(Fraction, Vec2<Unit>)> {
     let forward = direction(d)?;
-    // A face that is hit is the entry, because the shape is convex.
+    // The shape is convex, so the ray enters where it hits a face from outside.
     if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
         return Some(found);
     }
-    // Without a radius there are no circles, but a ray may hit a point, or a segment's end along the segment.
+    // Without a radius there are no circles. A ray may still hit a point, or the end of a segment when it runs along
+    // the segment.
     if radius == 0 && points.len() > 2 {
         return None;
     }
@@ -89,7 +90,8 @@ fn enter_face(
     }
     let tangent = direction(e)?;
     let way = -cross(e, o - p) - times_length(radius, e, tangent);
-    // Negative if the ray starts behind the face by a rounding error, although outside of the shape.
+    // `way` is negative if a rounding error puts the start of the ray behind the face, although it is outside of the
+    // shape.
     if way < -times_length(radius.min(ROUNDING), e, tangent) || way > inwards {
         return None;
     }
@@ -120,7 +122,7 @@ fn enter_circle(
     let half_chord = (i128::from(r - h) * i128::from(r + h)).max(0).isqrt();
     let way = before - ((half_chord * (scaled_along(forward, d) >> 8)) >> (Unit::FRAC_NBITS - 8));
     let whole = dot(d, d);
-    // Negative if the ray starts inside by a rounding error.
+    // `way` is negative if a rounding error puts the start of the ray inside the circle.
     (way <= whole).then(|| Fraction::ratio(way.max(0), whole))
 }
 
@@ -129,7 +131,7 @@ fn times_length(radius: Grid, v: Vec2<Grid>, direction: Vec2<Unit>) -> i128 {
     ((scaled_along(direction, v) >> 8) * i128::from(radius.to_bits())) >> (Unit::FRAC_NBITS - 8)
 }
 
-/// Approach in metres to a surface with this outward normal.
+/// Distance in metres by which a translation approaches a surface with this outward normal.
 pub(in crate::collision) fn approach(normal: Vec2<Unit>, translation: Vec2<Grid>) -> Grid {
     -along(normal, translation)
 }

@@ -1,9 +1,9 @@
 //! Shape cast: B moved by `t v` touches A if the ray `t v` from the origin meets the Minkowski difference `A - B`. A
 //! shape cast is therefore a ray cast, without iteration.
 //!
-//! A moving shape stops at a distance of [`SKIN`] before contact. Its next move must not be stopped by a surface that
-//! it slides along or leaves. If the shape starts within the skin, or overlapping, only a movement against the normal
-//! is a hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
+//! A moving shape stops at a distance of [`SKIN`] before contact. A surface that the shape slides along or leaves must
+//! not stop its next move. If the shape starts within the skin, or overlapping, only a movement against the normal is a
+//! hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
 
 use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
@@ -15,10 +15,12 @@ use crate::math::{Fx, Unit, Vec2};
 /// Distance in metres that a moving shape keeps from others.
 pub(crate) const SKIN: Fx = fx!(0.0001);
 
-/// Distance in metres beyond the skin that still counts as contact: more than the rounding error of a hit, 0.2 µm.
+/// Distance in metres beyond the skin that still counts as contact. It exceeds the rounding error of a hit, which is
+/// 0.2 µm.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
-/// Right shift for the tolerance of sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m.
+/// Right shift that gives the largest approach that still counts as sliding: 2^-24 m per metre of movement, plus 2^-24
+/// m.
 const SLIDING: u32 = 24;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,9 +8,10 @@
 //! ```
 //!
 //! in the fraction `h` of the tick, for a displacement `d` and a rotation by `theta`. The separation along any axis is
-//! a lower bound of the true one, so no contact has been passed while these parabolas stay above the target. The linear
-//! term lets a body that slides, rolls or spins beside a surface advance freely. Root finding on separating axes (E.
-//! Catto, "Continuous Collision", GDC 2013) takes as few steps but proves nothing between them.
+//! a lower bound of the true separation, so the shapes have no contact while these parabolas stay above the target. The
+//! linear term lets a body that slides, rolls or spins beside a surface advance freely. Root finding on separating axes
+//! (E. Catto, "Continuous Collision", GDC 2013) takes as few steps, but proves nothing about the time between two
+//! steps.
 //!
 //! Separation is signed: after contact it is the negative depth.
 
@@ -27,7 +28,8 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// steps.
 const STEPS_MAX: u32 = 48;
 
-/// Largest number of steps of queries, which are rare. Queries have policies other than [`StartPolicy::Protect`].
+/// Largest number of steps of queries, which have policies other than [`StartPolicy::Protect`]. Queries are rare, so
+/// they may take more steps.
 const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians. With this limit and [`REACH_MAX`], `theta^2 |r|` fits its type.
@@ -68,7 +70,8 @@ pub(crate) enum TimeOfImpact {
     /// [`StartPolicy::Report`], any overlap is too deep. With [`StartPolicy::Protect`], any contact of two shapes
     /// without an inner radius is too deep.
     Overlapped,
-    /// The search gave up. The shapes do not come within the target before this fraction of the tick.
+    /// The search gave up, because it took too many steps, made no progress or a shape rotates too far. The shapes do
+    /// not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
 }
 
@@ -87,11 +90,11 @@ pub(crate) enum StartPolicy {
 /// support shapes are posed as at the start, each relative to its own body's centre of mass.
 ///
 /// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. A depth such as a
-/// quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
+/// quarter of B's inner radius lets the body pass, and the solver then resolves the overlap.
 ///
-/// Shapes that start within the target get another target. It is half-way between the initial separation (0 if that is
-/// positive) and a depth of three quarters of an inner radius: that of B, or of A if B has none. The centre of B then
-/// does not pass the surface of A.
+/// Shapes that start within the target get another target. It is half-way between the initial separation (0 if the
+/// separation is positive) and a depth of three quarters of the inner radius of B, or of A if B has no inner radius.
+/// The centre of B then does not pass the surface of A.
 pub(crate) fn time_of_impact(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -128,9 +131,9 @@ pub(crate) fn normal_at(
 
 const OVERLAP_STEPS_MAX: u32 = 256;
 
-/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth. `None` also if a shape
-/// rotates too far or the search takes too many steps. Two segments, which have no depth unless they cross, overlap
-/// when they come within 0.05 mm.
+/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth. `None` if the shapes do not
+/// overlap, a shape rotates too far or the search takes too many steps. Two segments have a depth only if they cross,
+/// so they count as overlapping within 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -240,8 +243,8 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits for the far ends of the
-/// segment.
+/// Clips a long segment A to the part that B, at `b`, may meet. For the far ends of the segment, a unit normal would
+/// have too few bits.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
@@ -255,7 +258,7 @@ fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<Supp
 struct SweptShape {
     support: SupportShape,
     sweep: Sweep,
-    /// At the start, relative to the centre of B's body.
+    /// Centre of the shape's body at the start, relative to the centre of B's body.
     centre: Vec2<Fx>,
     displacement: Vec2<Fx>,
     /// Rotation in radians. 0 for a disc that rotates about its centre.
@@ -319,7 +322,7 @@ impl SweptShape {
     }
 }
 
-/// Each vertex is at `x + v h`, or behind that by at most `curvature h^2`.
+/// Each vertex is at `x + v h`, or behind this position by at most `curvature h^2`.
 struct Tracks {
     count: usize,
     vertices: [(Fx, Fx); 8],

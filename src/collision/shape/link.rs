@@ -14,7 +14,7 @@ pub(crate) struct Link {
     pub(crate) directions: Directions,
 }
 
-/// Directions of a link and its neighbours. `None` if there is no such link or it has no length.
+/// Directions of a link and its neighbours. `None` if the neighbour does not exist or a link has no length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Directions {
     pub(crate) before: Option<Vec2<Unit>>,
@@ -23,7 +23,7 @@ pub(crate) struct Directions {
 }
 
 impl Link {
-    /// `before` is the far end of the neighbour at `a`, `after` that of the neighbour at `b`.
+    /// `before` is the far end of the neighbour at `a`, and `after` the far end of the neighbour at `b`.
     pub(crate) fn new([a, b]: [Vec2<Fx>; 2], [before, after]: [Option<Vec2<Fx>>; 2], sides: Sides) -> Self {
         let directions = Directions {
             before: before.and_then(|before| before.towards(a).normalized()),
@@ -44,8 +44,8 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
-    /// Whether the link is solid for a shape whose centre is at `place`. Beyond the far end of a neighbour, the place
-    /// may be in the open, on the left of the chain.
+    /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of only the neighbour
+    /// counts up to the neighbour's far end: beyond that end, it may be on the left of the chain.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, sides, .. } = *self;
         let is_before = (place - a).dot(a.towards(b)) < 0;

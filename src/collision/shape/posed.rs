@@ -7,7 +7,8 @@ use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
 use crate::collision::shape::link::Link;
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
-/// Largest distance in metres of a corner from the centre, radius included, for the SIMD path.
+/// Largest distance in metres from the centre of a box to a corner, plus the rounding radius, for which the SIMD path
+/// takes the box.
 const BOX_REACH_MAX: Length = Length::lit("3");
 
 #[derive(Clone, Debug)]
@@ -215,7 +216,7 @@ impl Hull {
     #[inline(always)]
     fn set_faces(&mut self, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
         let (vertices, normals) = (&mut self.vertices, &mut self.normals);
-        // Negated after rounding, so that they stay exact opposites.
+        // Negates the rounded vectors, so that opposite vertices and normals stay exact opposites.
         [vertices[0], vertices[1], vertices[2], vertices[3]] = [*v0, *v1, -*v0, -*v1];
         [normals[0], normals[1], normals[2], normals[3]] = [*n0, *n1, -*n0, -*n1];
     }
@@ -245,7 +246,7 @@ impl Hull {
 }
 
 impl PosedShape {
-    /// `rotation` is that of the body, computed once for all of its shapes.
+    /// `rotation` is the rotation of the body, which callers compute once for all of its shapes.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
@@ -300,8 +301,8 @@ impl PosedShape {
         }
     }
 
-    /// Faces of a small box in its own frame. `None` if the centre of the box is not its body's centre of mass. The
-    /// faces suffice to pose the box with the body.
+    /// Faces of a small box in its own frame, if the centre of the box is its body's centre of mass. The faces and the
+    /// body's pose suffice to pose this box. `None` for any other shape.
     pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
         let Geometry::Polygon(polygon) = &shape.geometry else { return None };
         self.as_small_box()?;

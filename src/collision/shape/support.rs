@@ -30,7 +30,7 @@ pub(crate) struct SupportShape {
 }
 
 impl SupportShape {
-    /// In world axes relative to `origin`, which the support shapes of a query share.
+    /// Support shape in world axes, relative to `origin`. All support shapes of a query have the same origin.
     pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
         let place = |offset| place(shape.centre, offset, origin);
         match &shape.outline {
@@ -92,7 +92,7 @@ impl SupportShape {
 
     /// Largest distance of a point of the core from the origin.
     pub(crate) fn reach(&self) -> Grid {
-        // The longest vector also has the largest rounded length.
+        // The exact squares suffice to find the longest vector, and only its length is rounded.
         let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
         furthest.map_or(Grid::ZERO, |&point| length(point))
     }
@@ -110,7 +110,7 @@ impl SupportShape {
     fn mean(&self) -> Vec2<Grid> {
         let points = self.points();
         let count = i64::try_from(points.len()).unwrap_or(1);
-        // Divided before the sum, because the sum of 8 coordinates may exceed the grid's range.
+        // Divides before summing, because the sum of 8 coordinates may exceed the grid's range.
         points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
     }
 
@@ -218,10 +218,11 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
     Vec2::new(part(n.x), part(n.y))
 }
 
-/// Distance of a point from a line. `cross` is the cross product with a vector along the line, and `scaled_length` the
-/// length of that vector from [`scaled_along`].
+/// Distance of a point from a line. `cross` is the cross product of a vector along the line with the vector from the
+/// line to the point, and `scaled_length` the length of the vector along the line, from [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // For a cross product above 2^97 the height exceeds any distance of interest, and may lose a few bits.
+    // If the cross product exceeds 2^97, the height exceeds any distance of interest, and losing a few of its bits does
+    // no harm.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {

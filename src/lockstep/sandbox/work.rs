@@ -81,7 +81,8 @@ impl<'a> Costs<'a> {
             Command::Sleep { .. } | Command::SetGravity { .. } | Command::SetConfig { .. } => {
                 1 + self.everything()
             }
-            // The world counts each shape in reach of an explosion, and the joints and sleeping contacts of a body.
+            // The world itself counts the shapes in reach of an explosion, and the joints and sleeping contacts that a
+            // command visits.
             _ => VISIT_WORK,
         }
     }

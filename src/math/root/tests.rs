@@ -75,7 +75,7 @@ fn slow_component(part: u64, sum: u128) -> u128 {
     quotient.isqrt()
 }
 
-/// The larger error of both components, in thousandths of 2^-30.
+/// The larger of the two components' errors, in thousandths of 2^-30.
 fn unit_error(x: i64, y: i64, unit: Vec2<Unit>) -> u128 {
     let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
     let error = |part: i64, result: Unit| {
@@ -124,7 +124,7 @@ fn the_inverse_root_is_within_its_bound() {
         // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides are multiplied by 100 and squared.
         let y = u128::from(inverse_root(n)) * 100;
         let squared = |y: u128| (y * y) >> 6;
-        // Both sides are about 2^139, and fit without their last 22 bits (6 of the square and 16 of n).
+        // Both sides are about 2^139. Without their last 22 bits (6 of the square and 16 of n), they fit 128 bits.
         let target = 10_000_u128 << 104;
         let n = u128::from(n >> 16);
         assert!(squared(y - 51) * n < target && target < squared(y + 51) * n, "{n}");

@@ -1,4 +1,4 @@
-//! Taylor series in units of 2^-60, with an error below 2^-54, are the reference.
+//! The reference values come from Taylor series in units of 2^-60, with an error below 2^-54.
 
 use super::*;
 use crate::math::Rng;
@@ -73,7 +73,7 @@ fn cosine_and_sine_are_on_the_circle() {
 /// Error of [`arc_tangent`] in thousandths of 2^-32 turn.
 fn arc_tangent_error(x: i64, y: i64) -> i128 {
     let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
-    // Scaled up, so that the length has at least 62 bits.
+    // Scales the vector up, so that its length has at least 62 bits.
     let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
     let (x, y) = (i128::from(x) << shift, i128::from(y) << shift);
     let length = (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt();

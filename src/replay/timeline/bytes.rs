@@ -18,7 +18,8 @@ pub const KEYFRAMES_MAGIC: [u8; 8] = *b"\x89L2K\r\n\x1a\n";
 /// Version of the layout.
 pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
 
-/// Maximum bytes of all keyframes together, so that their file can be decoded at once.
+/// Maximum bytes of all keyframes together. Their file then stays below
+/// [`DECODE_BYTES_MAX`](crate::codec::DECODE_BYTES_MAX).
 pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 
 const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_FORMAT_VERSION };
@@ -215,7 +216,7 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-/// Inserts the saves of a file into `keyframes`, which thins them out as soon as they exceed its memory.
+/// Inserts the saves of a file into `keyframes`. If they exceed the memory budget, `keyframes` thins them out.
 pub(super) fn place(body: Body, ticks: u64, keyframes: &mut Keyframes<'_>) -> Result<(), KeyframesError> {
     let mut position = keyframes.first().position.clone();
     for (tick, Save(save)) in body.saves {

@@ -69,7 +69,7 @@ impl<'a> Keyframes<'a> {
         }
     }
 
-    /// Doubles the interval and removes the keyframes at other ticks.
+    /// Doubles the interval, and removes the keyframes that are not at multiples of the new interval.
     fn thin_out(&mut self) {
         self.interval = self.interval.saturating_mul(2);
         let interval = self.interval;

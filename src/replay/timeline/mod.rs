@@ -3,9 +3,9 @@
 //! A seek simulates forwards from a saved state:
 //!
 //! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as canonical bytes. When they exceed their memory
-//!   budget, the interval doubles and every second one is removed.
-//! - A *trail* of saves before the current tick while stepping backwards, so that the ticks between keyframes are
-//!   simulated once and not once per step.
+//!   budget, the interval doubles and every second keyframe is removed.
+//! - A *trail* of saves before the current tick, made while stepping backwards. With a trail, the ticks between two
+//!   keyframes are simulated once, and not again for each step.
 
 mod bytes;
 mod keyframes;
@@ -48,8 +48,8 @@ pub struct TimelineOptions {
     /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
     /// blocks, so that keyframes can be compared with checkpoints.
     pub interval: u32,
-    /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of that in
-    /// addition.
+    /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of this
+    /// amount in addition.
     pub bytes: usize,
 }
 
@@ -147,7 +147,7 @@ pub struct Timeline<'a, G: Game> {
     simulated: u64,
     /// The first tick that cannot be reached, and the reason.
     failed: Option<(u64, Verdict)>,
-    /// Whether the state of the game is not that of the current tick.
+    /// Whether the state of the game is wrong, that is, not the state of the current tick.
     is_wrong: bool,
 }
 
@@ -219,13 +219,13 @@ impl<'a, G: Game> Timeline<'a, G> {
     ///
     /// # Errors
     /// [`SeekError`]. If playing a tick fails, the timeline stays at the last tick played, and earlier ticks remain
-    /// reachable. After any other error it does not move.
+    /// reachable. After any other error, the timeline stays at its current tick.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by others.
+        // A short seek backwards is usually followed by further ones, so it leaves a trail for them.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {
@@ -250,8 +250,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.play_tick().map(|()| Step::Ticked)
     }
 
-    /// Goes back by one tick. The first step back in an interval may cost an interval of simulation. Further ones cost
-    /// none, given enough memory.
+    /// Goes back by one tick. The first step back in an interval may cost an interval of simulation. Further steps back
+    /// in this interval cost no simulation, if the memory suffices for the trail.
     ///
     /// # Errors
     /// As [`Timeline::seek`]. At the start the result is [`Step::Ended`].
@@ -262,14 +262,14 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Plays the ticks not played yet, which creates their keyframes, and returns to the current tick.
+    /// Plays the ticks that have not been played, creates their keyframes, and returns to the current tick.
     ///
     /// # Errors
     /// As [`Timeline::seek`].
     pub fn play_all(&mut self) -> Result<(), SeekError> {
         let here = self.tick();
         self.seek(self.played)?;
-        // `seek` would skip ticks if there are keyframes from a file.
+        // `seek` would jump to keyframes from a file and skip the ticks before them.
         while self.tick() < self.ticks() {
             self.play_tick()?;
         }
@@ -284,11 +284,13 @@ impl<'a, G: Game> Timeline<'a, G> {
 
     /// Replaces the keyframes by those of a file from [`Timeline::keyframes_to_bytes`].
     ///
-    /// The interval becomes a multiple of the interval in the file. When a keyframe is used, its state has to match the
-    /// replay's checkpoint. This does not verify that the inputs lead to that state: see [`Timeline::played`].
+    /// The interval becomes a multiple of the interval in the file. When a seek uses a keyframe, its state has to match
+    /// the replay's checkpoint. This comparison does not verify that the inputs lead to that state: see
+    /// [`Timeline::played`].
     ///
     /// # Errors
-    /// [`KeyframesError`] for other bytes, and for keyframes of another replay. The current keyframes are unchanged.
+    /// [`KeyframesError`] for other bytes, and for keyframes of another replay. The current keyframes are then
+    /// unchanged.
     pub fn use_keyframes(&mut self, bytes: &[u8]) -> Result<(), KeyframesError> {
         let body = bytes::decode::<G>(self.file, bytes)?;
         let interval = body.interval.saturating_mul(self.interval().div_ceil(body.interval));
@@ -362,7 +364,8 @@ impl<'a, G: Game> Timeline<'a, G> {
             }
             self.failed = Some((before + 1, verdict.clone()));
             if now == before && matches!(verdict, Verdict::LimitExceeded { .. }) {
-                // The step may have begun. If the way back fails as well, the next seek tries again.
+                // The failed step may have changed the game, so its state before the step is restored. If this fails as
+                // well, the next seek tries again.
                 self.is_wrong = true;
                 let _ = self.seek(before);
             }

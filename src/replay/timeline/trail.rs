@@ -19,8 +19,9 @@ impl<'a, S> Trail<'a, S> {
         self.saves.range(..=tick).next_back().map(|(_, kept)| kept)
     }
 
-    /// Inserts a save. If there are more than `length`, removes others: first those of later ticks from the latest on,
-    /// because further steps backwards do not need them, then the earliest.
+    /// Inserts a save. If there are more than `length` saves, removes other saves. Saves of later ticks are removed
+    /// first, starting with the latest, because further steps backwards do not need them. Then the earliest saves are
+    /// removed.
     pub(super) fn keep(&mut self, position: ReplayPosition<'a>, save: S, length: u64) {
         let tick = position.tick;
         self.saves.insert(tick, (position, save));

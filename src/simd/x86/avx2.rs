@@ -204,7 +204,8 @@ impl Lanes<WIDTH> for Avx2 {
     fn narrow_saturating<const SHIFT: i32>(a: Products) -> (__m256i, __m256i) {
         let a = rounded::<SHIFT>(a);
         let low = shifted::<SHIFT>(a);
-        // SAFETY: see `Avx2`. A number fits if all bits above those kept equal the sign bit of the result.
+        // SAFETY: see `Avx2`. A number fits if all bits above the 32 bits of the result equal the sign bit of the
+        // result.
         unsafe {
             let high = interleave(_mm256_srli_epi64::<32>(a.even), a.odd);
             let above = _mm256_sra_epi32(high, _mm_cvtsi32_si128(SHIFT - 1));
@@ -354,7 +355,7 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     }
 }
 
-/// The 32 bits above the lowest `SHIFT`, which are the same after a logical and an arithmetic shift.
+/// The 32 bits above the lowest `SHIFT` bits. A logical and an arithmetic shift give the same 32 bits.
 #[inline(always)]
 fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     // SAFETY: see `Avx2`.
@@ -365,7 +366,8 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     }
 }
 
-/// `a / 2^shift`, rounded down. AVX2 has only a logical shift of 64-bit numbers, so 2^62 is added first.
+/// `a / 2^shift`, rounded down. AVX2 has only a logical shift of 64-bit numbers, so the function first adds 2^62 to
+/// make the number positive.
 #[inline(always)]
 fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.

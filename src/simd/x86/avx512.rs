@@ -1,6 +1,6 @@
 //! AVX-512 backend: eight lanes in a vector of 512 bits. Each number is the lower half of 64 bits, and the upper half
 //! is undefined. Eight products then fit one vector, factors need no shuffle, and a product that has been shifted down
-//! is a number.
+//! already has the format of a number.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx512/division.rs"]

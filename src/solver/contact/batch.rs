@@ -19,7 +19,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// body has an impact.
     pub(super) immovable: Ints<N>,
     /// -1 in lanes with two points. In other lanes of a batch of two points, the second point is a copy of the first
-    /// one, without an impulse.
+    /// point, without an impulse.
     pub(super) both: Ints<N>,
     pub(super) points: [Point<N>; 2],
     /// The friction row, half-way between the points. One row is enough, because both points lie on one line along the

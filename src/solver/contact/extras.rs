@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have these, so that their data is
-//! stored separately and takes no cache space from other contacts.
+//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of them. The data of these
+//! extras is therefore stored separately, and takes no cache space from other contacts.
 
 use super::impact::Impacts;
 use super::input::ContactSource;

@@ -4,7 +4,8 @@
 //! L_tick = sum of (L + L_restitution) over the sub-steps
 //! ```
 //!
-//! Every sub-step applies the whole `L`: the warm start applies its last value, and the passes apply its changes.
+//! Every sub-step applies the whole `L`: the warm start applies the `L` of the last sub-step, and the passes apply the
+//! changes of `L`.
 
 use super::super::batches::{BatchParts, Operation};
 use super::Contacts;

@@ -27,8 +27,8 @@ use super::{Constants, Contacts};
 use crate::math::{Rate, Shift, Speed, Unit, mul};
 use crate::simd::{Ints, Lanes};
 
-/// Gap in metres below which a point bounces together with another point that hits. Otherwise a box that lands not
-/// quite flat would spin.
+/// Gap in metres below which a point bounces together with another point that hits. If only the point that hits
+/// bounced, a box that lands not quite flat would spin.
 const NEAR: Shift = Shift::lit("0.005");
 
 #[derive(Clone, Debug)]
@@ -49,8 +49,8 @@ pub(super) struct Impacts<const N: usize> {
     /// overlap, -1 only where it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
     pub(super) slide: Ints<N>,
-    /// `f` times the tangential velocity: the part of the sliding that precedes the impact, on which friction does not
-    /// act.
+    /// `f` times the tangential velocity: the part of the sliding that precedes the impact, during which friction does
+    /// not act.
     pub(super) slip: Ints<N>,
 }
 
@@ -91,7 +91,7 @@ pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`, or 0 for a point that does not hit.
     pub(super) rebound: L::Int,
     /// [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse of
-    /// this point. In the next sub-step the point approaches and may bounce.
+    /// the late point. In the next sub-step the point approaches and may bounce.
     pub(super) late: L::Mask,
 }
 
@@ -102,8 +102,9 @@ impl<L: Lanes<N>, const N: usize> PointImpact<L, N> {
     }
 }
 
-/// Measures relative normal velocities before forces act in a tick. Counts no faults, which must not depend on the
-/// batches: a contact without extras is measured only if it shares a batch with one that has extras.
+/// Measures relative normal velocities before forces act in a tick. Counts no faults: a contact without extras is
+/// measured only if it shares a batch with a contact that has extras, and the number of faults must not depend on which
+/// contacts share a batch.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct MeasureApproach;
 

@@ -54,7 +54,7 @@ pub(super) struct Input {
     pub(super) features: [u16; 2],
     /// Whether one of the bodies is wedged: see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
-    /// Whether one of the bodies has an impact, in this contact or in another one.
+    /// Whether one of the bodies has an impact, in this contact or in another contact.
     pub(super) impact: bool,
     pub(super) count: u8,
     pub(super) extras: bool,
@@ -200,7 +200,7 @@ impl ContactSource<'_> {
     }
 
     /// The bodies that impulses change, with the ground in place of the others. A body counts as changed even if its
-    /// share of an impulse rounds to 0: another contact may change it, and must not get the same colour.
+    /// share of an impulse rounds to 0: another contact may change the body, and must not get the same colour.
     #[inline(always)]
     pub(super) fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })

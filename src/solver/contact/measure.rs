@@ -11,7 +11,7 @@ use super::jacobian::along;
 use super::overflow_policy::{OverflowPolicy, Saturating};
 use crate::simd::Lanes;
 
-/// Measures the separations, for settings without a relax pass.
+/// Measures the separations if the settings have no relax pass. Otherwise the relax pass measures them.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Measure;
 

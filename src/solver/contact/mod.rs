@@ -66,9 +66,9 @@ const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if neither of its bodies has an initial guess of its impulses. A body has none if no contact of
-/// the body had points in the last tick, or if an impact may drive the body between two walls. Cold contacts need more
-/// iterations.
+/// A contact is cold if neither of its bodies has an initial guess of the impulses on it. A body has no guess if none
+/// of its contacts had points in the last tick, or if an impact may drive the body between two walls. Cold contacts
+/// need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,

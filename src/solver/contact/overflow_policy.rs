@@ -3,7 +3,7 @@
 //! [`Saturating`] saturates sums that may not fit their format. [`Unchecked`] only records whether all numbers were
 //! within bounds in which no sum can overflow and no clamp can act. Most contacts are within these bounds, because they
 //! are neither fast nor deep and their impulses are small. They are solved with `Unchecked` first, and again with
-//! `Saturating` if a number was out of bounds. Within the bounds, both give the same bits:
+//! `Saturating` if a number was out of bounds. Within the bounds, both policies give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -34,7 +34,8 @@ const UNCHECKED_RATE: Rate = Rate::lit("512");
 /// Unchecked speeds and impulses (64 m/s) and displacements (2 m) are below 2 to this power in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Base-2 logarithm of the bound of impulse changes, 4 m/s, and of separations, 1/8 m.
+/// Unchecked impulse changes (4 m/s) and separations (1/8 m) are below 2 to this power in units of the format of speeds
+/// and of displacements.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
@@ -152,7 +153,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> 
     }
 }
 
-/// Applies impulses of more than 512 m/s, which occur when a friction limit shrinks or a shape under load comes free.
+/// Applies impulses of more than 512 m/s. Such impulses occur when a friction limit shrinks or a shape under load comes
+/// free.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,
@@ -161,7 +163,7 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     faults: &mut Faults,
 ) {
     for _ in 0..3 {
-        // `Saturating::apply` applies the least of these at once as well.
+        // The range includes `-HALF`, because `Saturating::apply` also applies `-HALF` in one step.
         let step = L::max(L::min(d, L::splat(HALF - 1)), L::splat(-HALF));
         pair.change::<UNIT>(row, step);
         pair.keep_in_range(faults);

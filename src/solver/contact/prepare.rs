@@ -50,7 +50,7 @@ impl ContactSet {
         }
         let shares = warm.coloured.iter_mut().zip(&mut cold.coloured).zip(&mut *warm_starts).enumerate();
         threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
-            // A local variable, because the counts of several threads share a cache line.
+            // Counts in a local variable, because the elements of `warm_starts` for several threads share a cache line.
             let mut own = WarmStarts::default();
             for (coloured, is_cold) in [(warm, false), (cold, true)] {
                 let (colours, warm_starts) = (colouring.colours(is_cold, part), &mut own);

@@ -3,7 +3,8 @@
 use crate::math::{Unit, Vec2};
 
 /// Largest dot product of the normals of two walls between which an impact may wedge a body: the normals differ by at
-/// least 60 degrees. Friction holds a body between walls that open wider only if its coefficient is above 1.7.
+/// least 60 degrees. If they differ by less, friction holds a body between the walls only if the friction coefficient
+/// is above 1.7.
 const WEDGE_DOT_MAX: Unit = Unit::lit("0.5");
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,13 +1,13 @@
-//! Restitution: a point bounces if its approach speed was not below the threshold, and if its normal impulse, or that
-//! of another point that bounces together with it, is positive. The point separates at `e` times the approach speed, or
-//! more slowly if `e` is at most 1 and the contact would gain energy.
+//! Restitution: a point bounces if its approach speed is at least the threshold and its normal impulse is positive. If
+//! two points bounce together, a positive impulse of either is enough. The point separates at `e` times the approach
+//! speed, or more slowly if `e` is at most 1 and the contact would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + min(e va + drift, 0)), 0)     after the passes of the sub-step in which it bounces
 //! ```
 //!
-//! This impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes
-//! `va` and the drift.
+//! The impulse of restitution is not added to the accumulated impulse, because the next sub-step would apply it again.
+//! `impact.rs` computes `va` and the drift.
 //!
 //! The approach speed is measured before the warm start. Otherwise the impulse of one contact would count as an
 //! approach at the next contact, and balls in a groove would bounce for ever.
@@ -34,8 +34,8 @@ pub(in crate::solver) struct ApplyRestitution {
     pub(in crate::solver) again: bool,
 }
 
-/// Restitution above which contacts that bounce at the same time are solved against each other. Below it, an impact
-/// loses so much energy that their order does not matter.
+/// Restitution above which contacts that bounce at the same time are solved against each other. At a lower restitution,
+/// an impact loses so much energy that the order of the contacts does not matter.
 pub(super) const ELASTIC: Unit = Unit::lit("0.5");
 
 impl Operation<Contacts> for ApplyRestitution {

@@ -111,7 +111,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         2 => [half_way::<L, N>(first[0], second[0]), half_way::<L, N>(first[1], second[1])],
         _ => first,
     };
-    // While there is a gap, friction acts on A and B at different points.
+    // While there is a gap, friction acts on each body at its own surface.
     let half = L::narrow::<1>(L::mul(gap, one));
     let lift_x = L::narrow::<RATIO>(L::mul(n[0], half));
     let lift_y = L::narrow::<RATIO>(L::mul(n[1], half));

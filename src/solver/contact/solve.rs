@@ -31,7 +31,7 @@ use crate::simd::{Ints, Lanes};
 /// Largest number of rounds in which the two points of a contact are solved against each other. With a single round, an
 /// impact would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm instead of 1 mm.
 /// In a pile at rest one round is usually enough: a pyramid of 5050 boxes takes a tenth more time than with a limit of
-/// one.
+/// one round.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
@@ -295,8 +295,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
-            // A gap without an impulse is left to the next sub-step. If its approach were slowed before the gap is
-            // closed, a ball would rebound from above the floor.
+            // The relax pass leaves out a point with a gap and without an impulse. If it slowed the approach before the
+            // gap is closed, a ball would rebound from above the floor.
             Pass::Relax => {
                 let approaches = L::both(gap, L::greater(L::splat(1), rebound));
                 let speed = L::select(approaches, self.speed_of::<C>(separation, self.rate), L::splat(0));

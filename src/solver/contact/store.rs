@@ -79,8 +79,8 @@ impl<const N: usize> Records<N> {
     }
 
     /// The impulses of each point along the normal and the tangent, for the warm start in the next tick. Also writes
-    /// the impulses back to the batch, because the next tick may keep the batch. There they are rounded as if the batch
-    /// were filled with them.
+    /// the impulses back to the batch, because the next tick may reuse the batch. The impulses in the batch are rounded
+    /// as if the batch were filled from the state.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;

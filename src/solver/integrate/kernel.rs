@@ -68,14 +68,14 @@ fn one_by_one(
     }
 }
 
-/// Limits of components. A velocity within these limits does not exceed the speed limit.
+/// Limits of components. A velocity whose components are within these limits is within the speed limit.
 #[derive(Clone, Copy)]
 struct SpeedLimits {
     on_axis: i32,
     turning: i32,
 }
 
-/// The largest number such that a velocity with both components up to this number is within the limit.
+/// The largest number `n` such that every velocity with components of at most `n` is within the speed limit.
 fn on_axis(speed_max: Speed) -> i32 {
     let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
     i32::try_from((square / 2).isqrt()).expect("less than the limit")

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! With vector instructions, several dynamic bodies without locked axes are integrated at a time (`kernel`), if none
-//! may be beyond a limit. Other bodies are integrated one by one.
+//! Vector instructions integrate several bodies at a time (`kernel`) if all of them are dynamic, have no locked axis
+//! and certainly stay within the limits. Other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -167,8 +167,8 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// Shortens a velocity change so that damping leaves 512 m/s of it. No speed limit is larger, but a body that such a
-/// force turns back loses speed.
+/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit is larger. The shortening
+/// therefore matters only if the force reverses the velocity of the body, which then ends slower.
 #[cold]
 fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
     let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));

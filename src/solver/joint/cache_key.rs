@@ -1,11 +1,12 @@
-//! Cache key of the arrangement of joints, which rarely changes from tick to tick.
+//! Cache key of the arrangement of joints. The arrangement rarely changes from tick to tick.
 
 use alloc::vec::Vec;
 
 use super::super::settings::Tuning;
 use crate::simd::Machine;
 
-/// Everything that the arrangement of joints depends on: their order, their kinds of constraint, and the masses.
+/// Everything on which the arrangement of the joints (batches, colours and blocks) depends: which joints and bodies
+/// take part, their definitions, the settings, and the threads.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CacheKey {
     /// `None` before the first tick.
@@ -20,7 +21,7 @@ pub(super) struct CacheKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
     All,
-    /// Everything except impulses and angles, which have changed outside of a step.
+    /// Everything except impulses and angles, which an edit or a restore has changed.
     Arrangement,
     Nothing,
 }

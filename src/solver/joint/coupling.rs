@@ -129,7 +129,8 @@ impl JointDef {
 }
 
 impl Joint {
-    /// The torque on B, from the opposite of that on A. The two are equal, except in a gear without a pitch point.
+    /// The torque on B, computed from `opposite`, the negated torque on A. The two are equal, except in a gear without
+    /// a pitch point.
     pub(super) fn torque_on_b(&self, opposite: Fx, gap: Vec2<Fx>) -> Fx {
         match self.def.kind {
             JointKind::Gear(gear) if pitch_per_tooth(&gear, gap).is_none() => {
@@ -139,8 +140,8 @@ impl Joint {
         }
     }
 
-    /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. Without a pitch point
-    /// it is in radians, with 2 pi per tooth. `None` for other kinds.
+    /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. The error of a gear
+    /// without a pitch point is in radians, with 2 pi per tooth. `None` for other kinds.
     pub(crate) fn coupling_error(&self, a: &Body, b: &Body) -> Option<Fx> {
         let def = &*self.def;
         Some(match &def.kind {
@@ -178,7 +179,7 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// The row of a gear and the position along it, which is `s` metres per unit of `NA a + NB b` (see `gear.rs`). The
+/// The row of a gear and the position along the row: `s` metres per unit of `NA a + NB b` (see `gear.rs`). The
 /// direction of the row has the length `(NA + NB) s / distance`. `s` is the smaller of the scales of the pitch line and
 /// of a row on an angle, because with a larger `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
@@ -218,8 +219,9 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// The row of a pulley and the position along it. `ropes` lead from the wheels to the anchors. One factor scales both
-/// directions, of which that on B is `ratio` times as long, to at most [`LONGEST`] and at least a quarter of it.
+/// The row of a pulley and the position along it. `ropes` lead from the wheels to the anchors. The direction on B is
+/// `ratio` times as long as the direction on A. One factor scales both, so that their lengths are between a quarter of
+/// [`LONGEST`] and [`LONGEST`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
         // An anchor at its wheel counts as hanging down.

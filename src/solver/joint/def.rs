@@ -43,7 +43,7 @@ pub struct JointDef {
     pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
-    /// A number for the game, which is part of the state and its hash.
+    /// A number for the game. It is part of the state and of the state hash.
     pub user_data: u64,
 }
 
@@ -104,11 +104,11 @@ pub enum JointKind {
     Weld(Weld),
     /// B slides along the x axis of A's frame and turns: a wheel on its suspension.
     Wheel(Wheel),
-    /// The frames are driven with limited force: top-down friction, dragging with a pointer.
+    /// The joint drives the frames with limited force: top-down friction, dragging with a pointer.
     Motor(Motor),
     /// The frames are free. The bodies do not collide, unless [`JointDef::collide_connected`] is set.
     Filter,
-    /// The wheels about the anchors turn in a ratio.
+    /// Two wheels, each about an anchor, turn in a fixed ratio.
     Gear(Gear),
     /// The wheel about A's anchor rolls along the x axis of B's frame.
     Rack(Rack),
@@ -118,8 +118,8 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with the load in the last sub-step of a tick. In a joint's first tick, which has no impulses for the
-/// warm start, the load may be overestimated by a third.
+/// Each tick compares the threshold with the load in its last sub-step. In a joint's first tick, the solver has no
+/// impulses for the warm start, and may overestimate the load by a third.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -179,7 +179,8 @@ impl JointFrame {
         }
     }
 
-    /// Whether the anchor is farther from the body's origin than lever arms can be, which only a fixed body allows.
+    /// Whether the anchor is farther from the body's origin than lever arms can be. Only fixed bodies may have such an
+    /// anchor.
     pub(super) fn is_far(&self) -> bool {
         let Vec2 { x, y } = self.anchor;
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
@@ -204,7 +205,7 @@ impl JointFrame {
 }
 
 impl JointDef {
-    /// A joint between the origins of two bodies, which do not collide with each other.
+    /// A joint between the origins of two bodies. The bodies do not collide with each other.
     #[must_use]
     pub fn new(body_a: BodyId, body_b: BodyId, kind: impl Into<JointKind>) -> Self {
         JointDef {

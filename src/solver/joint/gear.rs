@@ -34,7 +34,7 @@ fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<
 /// Relative to the line between the anchors, B turns by `-teeth_a / teeth_b` times the turn of A.
 ///
 /// Wheels with teeth of the same sign are beside each other and turn in opposite directions. A wheel with a negative
-/// number is a ring around the other one, and both turn the same way, as with a belt.
+/// number of teeth is a ring around the other wheel. The two then turn the same way, as with a belt.
 ///
 /// The gear holds no distance: give each wheel a hinge, to the ground or to a common body.
 /// [`World::fit_joint`](crate::world::World::fit_joint) sets the angles of the frames so that the teeth mesh.
@@ -64,7 +64,7 @@ fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<
 pub struct Gear {
     /// Teeth of A's wheel: 1 to 1000, or -1 to -1000 for a ring.
     pub teeth_a: i32,
-    /// Teeth of B's wheel, like A's. At most one of the wheels is a ring.
+    /// Teeth of B's wheel, in the same ranges. At most one of the wheels is a ring.
     pub teeth_b: i32,
 }
 
@@ -91,7 +91,7 @@ impl Gear {
 
 /// A wheel on a rack: A turns about its anchor and rolls along the x axis of B's frame.
 ///
-/// The pitch line is at the distance `radius` to the right of that axis. The joint holds no distance: give the wheel a
+/// The pitch line is at the distance `radius` to the right of the x axis. The joint holds no distance: give the wheel a
 /// hinge and the rack a slider. If the rack is fixed, give the wheel a [`Wheel`](crate::solver::Wheel) joint.
 /// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds.
 ///

@@ -1,4 +1,5 @@
-//! Joints other than hinges, solved one by one before the hinges. Rows and points in a block are left to the block.
+//! Joints other than hinges, solved one by one before the hinges. Rows and points that belong to a block are solved by
+//! the block.
 
 use alloc::vec::Vec;
 

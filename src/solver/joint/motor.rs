@@ -38,7 +38,8 @@ use crate::math::{Fx, Vec2};
 #[doc(alias = "MotorJoint")]
 pub struct Motor {
     /// Drives B's anchor to a velocity relative to A's frame
-    /// ([`World::joint_velocity`](crate::world::World::joint_velocity)). If A rotates, B is driven around with it.
+    /// ([`World::joint_velocity`](crate::world::World::joint_velocity)). If A rotates, the motor drives B around with
+    /// A.
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
@@ -148,7 +149,7 @@ impl Motor {
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         if let Some(Pull { soft, max }) = self.angular_spring {
-            // An unlimited range is recognised by its bounds.
+            // `Fx::MIN` and `Fx::MAX` stand for no bound.
             let lower = if max == Fx::MAX { Fx::MIN } else { -max };
             let range = JointLimit { lower, upper: max };
             parts.spring_within(Direction::Angle, Some(soft.towards(Fx::ZERO)), range);

@@ -10,8 +10,8 @@ pub(super) const SIZE_MAX: Fx = fx!(1048576);
 const HERTZ_MAX: Fx = fx!(1000);
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
-/// The range of a joint's position, in radians or metres, within ±2^20, with `lower <= upper`.
-/// [`Distance::spring_force`](crate::solver::Distance::spring_force) is a range of forces in N.
+/// The range of a joint's position, in radians or metres, within ±2^20, with `lower <= upper`. In
+/// [`Distance::spring_force`](crate::solver::Distance::spring_force), this type is a range of forces in N.
 ///
 /// Under a steady acceleration `a`, a position exceeds its limit by `a / (2 pi f)^2`. Here `f` is the frequency of
 /// [`JointDef::softness`](crate::solver::JointDef::softness) or
@@ -102,7 +102,7 @@ pub struct Spring {
 ///
 /// With an angular spring, two free bodies swing with the frequency `hertz`. With a linear spring between anchors, two
 /// point masses do: the stiffness is `(2 pi hertz)^2 m` N/m in all directions. Here `m` is the reduced mass
-/// `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed one sags by
+/// `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed body sags by
 /// `g / (2 pi hertz)^2`. If its anchor is off the centre of mass by `r`, across the pull, frequency and damping ratio
 /// are `sqrt(1 + r^2 / k^2)` times as large, with the radius of gyration `k`.
 ///

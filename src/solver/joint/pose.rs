@@ -95,8 +95,8 @@ impl Ends {
         }
     }
 
-    /// The pose at the point where an impulse does not rotate the bodies relative to each other. Rows there and rows on
-    /// the angle do not disturb each other. With the vector `c` from A's centre to B's, and the share
+    /// The pose at the point where an impulse does not rotate the bodies relative to each other. Rows at this point and
+    /// rows on the angle do not disturb each other. With the vector `c` from A's centre to B's, and the share
     /// `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, pose: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
         let (share_a, _) = self.measure_angle(body_rotations).row.shares();
@@ -182,8 +182,8 @@ impl JointPose {
         Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
     }
 
-    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. If there are no
-    /// [levers at one point](Self::levers_at_one_point), impulses act only along the line between the centres.
+    /// The block of a pulled or driven point. `mass_scale` is the mass scale of the spring, or 1 for a motor. If there
+    /// are no [levers at one point](Self::levers_at_one_point), impulses act only along the line between the centres.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),
@@ -195,8 +195,8 @@ impl JointPose {
     }
 
     /// Levers to one point, which conserve angular momentum. The point is B's anchor if it is in reach of A
-    /// ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise it is the end of A's arm, shortened to
-    /// this reach. `None` if that end is not in reach of B.
+    /// ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise A's arm is shortened to this reach, and
+    /// the point is the end of the shortened arm. `None` if this point is not in reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

@@ -2,8 +2,8 @@
 //!
 //! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have
 //! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). The row across the axis acts at the
-//! point where its impulse does not rotate the bodies relative to each other. At B's anchor it would disturb the row on
-//! the angle, and a slider with a mass ratio of 100 would rotate three to ten times as far.
+//! point where its impulse does not rotate the bodies relative to each other. A row that acts at B's anchor would
+//! disturb the row on the angle, and a slider with a mass ratio of 100 would rotate three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::math::Fx;
 
 /// A slider: B's anchor stays on the x axis of A's frame, and B's frame stays parallel to A's.
 ///
-/// The translation is the position of B's anchor along that axis, in metres. If A can turn, keep B's anchor within 88
+/// The translation is the position of B's anchor along this x axis, in metres. If A can turn, keep B's anchor within 88
 /// radii of gyration of A from A's centre of mass: longer lever arms are clamped.
 ///
 /// ```

@@ -1,7 +1,7 @@
 //! The revolute joint: a point block, and spring, motor and limits on the angle.
 //!
-//! Arms and gains are both updated after every displacement. With only the arms updated, joints with long arms
-//! over-correct and explode. With neither updated within a tick, a grid of joints explodes.
+//! Arms and gains are both updated after every displacement. If only the arms were updated, joints with long arms would
+//! over-correct and explode. If neither were updated within a tick, a grid of joints would explode.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +14,8 @@ use crate::math::Fx;
 ///
 /// A steady acceleration `a` of a body separates the anchors by `a / (2 pi f)^2`. Here `f` is the frequency of
 /// [`JointDef::softness`](crate::solver::JointDef::softness) or else
-/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The latter is doubled if one of the
-/// bodies has no other joint and the other one is not dynamic. With the default of 60 Hz, gravity opens the hinge of a
+/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). `joint_hertz` is doubled if one of the
+/// bodies has no other joint and the other body is not dynamic. With the default of 60 Hz, gravity opens the hinge of a
 /// rotor by 18 µm, or by 70 µm if the rotor has another joint.
 ///
 /// The angle is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns.

@@ -243,7 +243,7 @@ impl JointRow {
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { .. }, Pass::Bias) => (&self.softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return None,
-            // As with contacts, a gap without an impulse is left to the next sub-step.
+            // As with contacts, the relax pass leaves out a limit that is not reached and has no impulse.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
                 return None;
             }

@@ -70,7 +70,7 @@ impl JointShare<'_, '_> {
         context.wait();
     }
 
-    /// Predicts the rotations in the next sub-step from the velocities at the end of the last sub-step.
+    /// Predicts the rotations in this sub-step from the velocities at the end of the last sub-step.
     pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
         if self.is_empty {
             return;
@@ -159,5 +159,5 @@ struct Stretch {
 /// their initial energy with this limit, and 1.56 times with 0.1 radians (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 
-/// [`TURN_MAX`] of a body whose only joint is an anchored hinge, which one iteration solves exactly.
+/// [`TURN_MAX`] for a body whose only joint is an anchored hinge. One iteration solves such a hinge exactly.
 const ANCHORED_TURN_MAX: Unit = Unit::lit("0.25");

@@ -60,8 +60,8 @@ impl Joint {
     }
 
     /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same. Whole turns are
-    /// kept if its kind stays the same, except for a rack that fits better without them, as one from
-    /// [`JointDef::fitted`] does.
+    /// kept if the kind stays the same. A rack that fits better without them, as after [`JointDef::fitted`], loses
+    /// them.
     pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {

@@ -1,15 +1,15 @@
 //! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
 //!
-//! The length `s` may be chosen for each row. This choice makes `D = aA eA^2 + aB eB^2` about 1 and keeps the
+//! The length `s` may be chosen for each row. The following choice makes `D = aA eA^2 + aB eB^2` about 1 and keeps the
 //! coefficients small:
 //!
 //! ```text
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is limited to 100. It would be larger only for a body more than 10 000 times as heavy as the other one, if the
-//! other one does not turn, or has a radius of gyration at least about 100 times as large. An angular impulse `P`
-//! corresponds to `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is limited to 100. A larger `e` would occur only if one body is more than 10 000 times as heavy as the other
+//! body, and the lighter body does not turn or has a radius of gyration at least about 100 times as large. An angular
+//! impulse `P` corresponds to `L = P (mA + mB) D / s`, with inverse masses `mA` and `mB`.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Unit, div_round, mul, round_shift, saturate, saturate_wide};
@@ -54,7 +54,7 @@ fn quotient(n: i64, d: i64) -> i64 {
 /// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that impulses turn.
 /// It need not be exact, because it only sets the units of a row.
 pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
-    // 1 / k has 21 fraction bits, so that the sum has 72. In gears it is up to 5e5.
+    // `1 / k` has 21 fraction bits, so that the sum has 72. In gears, `1 / k` is up to 5e5.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> u64 {
         let (product, extra) = inverse_gyration.times_exact(Unit::ONE);
         if fraction == 0 { 0 } else { round_shift(product, (extra + 9).min(63)).unsigned_abs() }

@@ -5,7 +5,7 @@
 //! D  = aA (nA^2 + eA^2) + aB (nB^2 + eB^2)
 //! ```
 //!
-//! `D` should be about 1. A `D` that would give gains above 4.1 is replaced by a larger one, and one update then removes
+//! `D` should be about 1. A `D` that would give gains above 4.1 is replaced by a larger `D`. One update then removes
 //! only a part of the velocity. This happens in gears whose anchors are off their wheels' centres, not in pulleys.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};

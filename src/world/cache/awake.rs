@@ -18,7 +18,7 @@ pub(crate) struct AwakeSet {
     /// left out.
     joints: Vec<u32>,
     with_threshold: Vec<u32>,
-    /// For each body slot, whether one of `joints` holds the body.
+    /// For each body slot, whether one of `joints` is attached to the body.
     held: Vec<bool>,
     is_current: bool,
     /// Whether there may be a kinematic body. May stay true after the last one is gone.

@@ -21,8 +21,8 @@ pub(crate) struct Changes {
     shapes: Vec<u32>,
     /// Length of `shapes` at which repeated slots are removed.
     compact_at: usize,
-    /// Fat boxes at the last pair update: boxes that overlapped then are not a new pair. [`Aabb::NOWHERE`] if the box
-    /// is unknown, or if more than the box of the shape has changed.
+    /// Fat boxes at the last pair update, by shape slot. Two shapes whose boxes overlapped then are not a new pair.
+    /// [`Aabb::NOWHERE`] if the box is unknown, or if the shape may have new pairs for another reason than a new box.
     last_boxes: Vec<Aabb>,
 }
 
@@ -68,8 +68,8 @@ impl Changes {
         self.shapes.push(shape);
     }
 
-    /// Removes repeated slots from a long list, which edits without ticks would lengthen for ever. Must not be called
-    /// within a tick, whose waking of islands reads the end of the list.
+    /// Removes repeated slots if the list is long. Otherwise edits without ticks would lengthen the list without limit.
+    /// Must not be called while a tick wakes islands by contact: `wake_touched` keeps an index into the list.
     pub(crate) fn compact(&mut self) {
         if self.shapes.len() >= self.compact_at.max(COMPACT_MIN) {
             self.shapes.sort_unstable();
@@ -118,7 +118,7 @@ impl Changes {
         saved.shapes.clone_from(shapes);
     }
 
-    /// Restores the record of a snapshot, after its state.
+    /// Restores the record of a snapshot. The state of the snapshot must already be restored.
     pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
         let Changes { everything, sleeping_contacts, rules, shapes, compact_at: _, last_boxes } = self;
         (*everything, *sleeping_contacts, *rules) = (saved.everything, saved.sleeping_contacts, saved.rules);

@@ -92,7 +92,7 @@ impl ContactCache {
         self.output.touching.retain(|pair| !is_removed(pair));
     }
 
-    /// The separating axes, for an operation that reorders the contacts.
+    /// The cached separating axes of `count` contacts, for an operation that reorders the contacts.
     pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<CachedAxis> {
         self.axes.resize(count, CachedAxis::default());
         &mut self.axes
@@ -121,7 +121,7 @@ impl ContactCache {
         }
     }
 
-    /// Makes room for a contact without a manifold.
+    /// Adapts the indices to a contact without a manifold that was inserted at `index`.
     pub(crate) fn insert(&mut self, index: usize) {
         let NarrowPhaseOutput { contacts, touching, .. } = &mut self.output;
         let later = contacts.partition_point(|&contact| (contact as usize) < index);

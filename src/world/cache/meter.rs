@@ -2,10 +2,11 @@
 
 use crate::collision::Contact;
 
-/// Number of pairs per body that are assumed to fit into full SIMD batches.
+/// Number of pairs per body that [`pair_work`] assumes to fit into full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// Additional cost of each further pair, as a number of ordinary pairs. Measured on a thousand squares in one place.
+/// Additional cost of each pair beyond [`PAIRS_PER_BODY`], as a number of ordinary pairs. Measured on a thousand
+/// squares in one place.
 const CROWDED_WORK: u64 = 64;
 
 /// Work units of comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.
@@ -53,7 +54,7 @@ impl WorkMeter {
         usize::try_from(pairs).unwrap_or(usize::MAX)
     }
 
-    /// Called when the rest of the budget does not suffice.
+    /// Exhausts the budget, because its rest does not cover the next work.
     pub(crate) fn exhaust(&mut self) {
         self.spent = self.spent.max(self.max.saturating_add(1));
     }
@@ -72,7 +73,7 @@ impl WorkMeter {
     }
 }
 
-/// Work units of one pass of the solver.
+/// Work units of the pairs in one pass of the solver.
 pub(crate) fn pair_work(pairs: u64, bodies: u64) -> u64 {
     // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
     let crowded = pairs.saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));

@@ -7,7 +7,7 @@
 //! | [`ShapeCache`] | broad phase, poses, predicted motion | never: updated with every body and shape |
 //! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added, changed or removed |
 //! | [`JointLinks`] | joints of each body | never: updated with every joint |
-//! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
+//! | [`PairCache`] | which pairs may have changed, pairs of bodies that joints keep from colliding | see [`Changes`] |
 //! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
 //! | [`Solver`] | constraints of the last tick | the next tick begins |
 

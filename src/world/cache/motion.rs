@@ -1,6 +1,6 @@
 //! Bounds and predicted motion of bodies and shapes.
 //!
-//! The narrow phase rejects most pairs because their shapes cannot meet within the tick. The data for that test is
+//! The narrow phase rejects most pairs because their shapes cannot meet within the tick. The data for this test is
 //! contiguous, so that the test reads neither bodies nor outlines.
 
 use alloc::vec::Vec;
@@ -47,12 +47,12 @@ impl PredictedMotion {
         self.shift.scale::<_, U24>(fraction).widen()
     }
 
-    /// The motion that starts at a fraction of the tick.
+    /// This motion, with the centre of mass moved to its place at a fraction of the tick.
     pub(crate) fn advanced(&self, fraction: Unit) -> Self {
         PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
 
-    /// Displacement in the tick of a point of the body.
+    /// Displacement of a point of the body within the tick.
     pub(crate) fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Travel> {
         if self.turn == 0 {
             return self.shift;
@@ -93,7 +93,7 @@ pub(crate) struct ShapeMotion {
     /// Largest overlap in metres that the filters of ghost collisions and one-way shapes tolerate.
     pub(crate) slack: Step,
     pub(crate) body: u32,
-    /// Distance of the surface from the vertices.
+    /// Rounding radius: distance of the surface from the vertices.
     pub(crate) radius: Length,
     /// Whether the shape is a circle about its body's centre of mass.
     pub(crate) disc: bool,
@@ -198,7 +198,7 @@ fn slack_of(bounds: Aabb) -> Step {
     narrow(half.x.max(half.y) / 16)
 }
 
-/// Limits of a world in metres.
+/// Distance limits of the narrow phase in metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margins {
     pub(crate) speculative: Length,

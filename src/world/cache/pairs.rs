@@ -10,7 +10,7 @@ use crate::world::state::State;
 pub(crate) struct PairCache {
     pub(crate) changes: Changes,
     pub(crate) non_colliding: NonCollidingPairs,
-    /// Contacts that have ended since the last events.
+    /// Contacts that have ended since contact events were last reported.
     pub(crate) ended: Vec<Contact>,
     pub(crate) buffers: PairBuffers,
 }

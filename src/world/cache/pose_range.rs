@@ -5,7 +5,7 @@ use crate::body::{Arena, Body, Handle, Pose, Shape, ShapeId};
 use crate::collision::{PosedShape, SmallBoxesRange};
 use crate::math::{Aabb, Fx, Vec2};
 
-/// The shapes of a thread.
+/// The shapes that a thread may move: a range of slots.
 pub(crate) struct PoseRange<'a> {
     pub(super) first: u32,
     pub(super) shapes: &'a mut [Option<PosedShape>],
@@ -59,7 +59,7 @@ impl PoseRange<'_> {
             if let Some(faces) = self.boxes.turn(index, &rotation) {
                 posed.turn_box(&faces, body.centre);
             } else if self.motion[index].disc {
-                // Spares the random access to the shape's definition.
+                // Avoids the random access to the shape's definition.
                 posed.shift(body.centre.wrapping_sub(posed.centre));
             } else {
                 posed.renew(&shapes.at(id.slot()).def, body, &rotation);

@@ -10,7 +10,7 @@ use crate::simd::prefetch;
 use crate::threads::split_at_ends;
 use crate::world::state::State;
 
-/// Shapes in world axes, by slot.
+/// Shapes at the poses of their bodies, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,

@@ -58,7 +58,8 @@ pub(crate) struct Finalised {
     pub(crate) swept: Vec<SweptBody>,
     /// Poses of `swept` after their sweep.
     pub(crate) moved: Vec<(u32, Pose)>,
-    /// Number of impacts that the threads have found in `swept`. A single thread counts them in the statistics.
+    /// Number of impacts of the bodies in `swept`, if several threads share the tick. A tick on one thread counts them
+    /// directly in the statistics.
     pub(crate) impacts: u32,
     /// Bodies that may be fast relative to kinematic bodies.
     pub(crate) relative: Vec<SweptBody>,

@@ -133,7 +133,7 @@ impl ShapeCache {
         self.broad_phase.remove(shape);
     }
 
-    /// Takes the emptied queue, so that a restore can list fat boxes in its memory.
+    /// Empties the queue of fat boxes and takes it, so that a restore can reuse its memory.
     pub(crate) fn take_refits(&mut self) -> Vec<(u32, Aabb)> {
         let mut refits = core::mem::take(&mut self.refits);
         refits.clear();
@@ -187,7 +187,7 @@ impl ShapeCache {
                 None => broad_phase.remove(slot),
             }
         }
-        // The state also has the fat boxes of disabled bodies.
+        // The list may contain fat boxes of disabled bodies, which are not in the broad phase.
         refits.retain(|&(slot, _)| broad_phase.fat(slot) != Aabb::NOWHERE);
         broad_phase.set_many(refits);
     }

@@ -19,7 +19,7 @@ impl UnionFind {
         }
     }
 
-    /// The smallest slot of a set. Halves the path on the way.
+    /// The smallest slot of the set that contains `slot`. Shortens the path to it (path halving).
     pub(crate) fn root(&mut self, mut slot: u32) -> u32 {
         while self.parents[slot as usize] != slot {
             let grandparent = self.parents[self.parents[slot as usize] as usize];

@@ -118,7 +118,7 @@ impl World {
         self.prepare_mass(body, &mass);
         self.replace_mass(body.slot(), mass);
         let id = self.insert_shape(body, shape);
-        // A moved centre of mass changes the rounding of the positions of the other shapes.
+        // If the centre of mass has moved, the positions of the other shapes are rounded differently.
         self.scratch.update_body(&self.state, body.slot());
         wake_overlapping_shape(&mut self.state, &mut self.scratch, id.slot());
         Ok(id)

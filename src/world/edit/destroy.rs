@@ -47,7 +47,7 @@ impl World {
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
         self.replace_mass(body.slot(), mass);
-        // A moved centre of mass changes the rounding of the positions of the other shapes.
+        // If the centre of mass has moved, the positions of the other shapes are rounded differently.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())
     }
@@ -85,7 +85,7 @@ impl World {
         if ids.is_empty() {
             return;
         }
-        // An exhausted budget must not leave contacts of removed shapes.
+        // Continues even if this exhausts the budget: no contact of a removed shape may stay.
         self.spend_scan();
         let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
         slots.sort_unstable();

@@ -7,8 +7,8 @@
 //!                   n  unit vector away from the centre of the explosion
 //! ```
 //!
-//! This follows Box2D's `b2World_Explode`. The impulse acts at the point of the shape nearest to the centre, or at the
-//! middle of a shape that contains the centre.
+//! The formula is that of Box2D's `b2World_Explode`. The impulse acts at the point of the shape nearest to the centre,
+//! or at the middle of a shape that contains the centre.
 
 use alloc::vec::Vec;
 
@@ -121,14 +121,15 @@ impl Explosion {
         !shape.is_sensor() && shape.filter().category & self.mask != 0
     }
 
-    /// The impulse on a shape relative to the explosion's centre; `None` if it is out of reach.
+    /// The impulse on a shape, which is given relative to the explosion's centre. `None` if the shape is out of reach.
     fn on(&self, shape: &SupportShape) -> Option<Push> {
         let found = distance(shape, &SupportShape::point(Vec2::ZERO));
         let strength = self.at_distance(found.distance);
         if strength == Fx::ZERO {
             return None;
         }
-        // If the centre is inside the shape, the nearest surface point gives no direction: use the middle.
+        // If the centre is inside the shape, the nearest surface point gives no direction: uses the middle of the
+        // shape.
         let inside = contains_point(shape, Vec2::ZERO);
         let point = if inside { shape.middle() } else { found.point_a };
         let away = if inside { point.normalized() } else { Some(-found.normal) };

@@ -8,12 +8,14 @@ use crate::math::{Angle, Fx, Vec2};
 use crate::world::World;
 use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
 
-/// Length in metres of a move that ends kept manifolds, which measure the sum of all moves modulo 1024 m.
+/// Displacement in metres along an axis from which [`World::set_transform`] drops the kept manifolds of a body's
+/// contacts. Kept manifolds measure displacements only modulo 1024 m.
 const KEPT_MOVE_MAX: Fx = fx!(1);
 
 impl World {
-    /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up, to ±2^31
-    /// along each axis, and their torques to ±2^31 N m, with a resolution of 2^-32.
+    /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up, and so do
+    /// their torques about the centre of mass. The sums saturate at ±2^31 N along each axis and at ±2^31 N m. Their
+    /// resolution is 2^-32.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
@@ -116,7 +118,7 @@ impl World {
         body.set_angular_velocity(angular);
         body.hold_locked_axes();
         let (is_dynamic, moves) = (body.is_dynamic(), body.is_moving());
-        // A kinematic body that is told to stay where it is wakes nothing.
+        // A kinematic body whose new velocity is 0 wakes no body.
         if is_dynamic || moves {
             wake_body(&mut self.state, &mut self.scratch, id.slot());
         }
@@ -128,8 +130,9 @@ impl World {
 
     /// Sets the pose that a kinematic body reaches in the next tick: the position of its origin in metres, and its
     /// rotation. The body pushes dynamic bodies on its way, and stops at the target unless it gets another target. The
-    /// body rotates in the direction of the smaller angle. [`Body::velocity`] is that of the way until the next step,
-    /// and 0 after it, even if the body gets a target in every tick. A target at its own pose wakes nothing.
+    /// body rotates in the direction of the smaller angle. Until the next step, [`Body::velocity`] is the velocity with
+    /// which the body reaches the target. After the step it is 0, even if the body gets a target in every tick. A
+    /// target equal to the current pose wakes no body.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose is
@@ -163,8 +166,8 @@ impl World {
         Ok(())
     }
 
-    /// Moves a body's origin at once to a position in metres, with a rotation. Contacts and joints that persist keep
-    /// their impulses.
+    /// Teleports a body: sets the position of its origin in metres, and its rotation. Contacts and joints that still
+    /// exist afterwards keep their impulses for warm starting.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or the position is out of range.

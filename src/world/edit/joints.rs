@@ -13,8 +13,8 @@ use crate::world::islands::{joint_retuned, joints_changed};
 use crate::world::state::State;
 
 impl World {
-    /// The definition of a joint with both anchors at a world point, in metres, and the angle 0 at the current poses.
-    /// Pass it to [`World::add_joint`].
+    /// Returns the definition of a joint with both anchors at a world point, in metres, and the angle 0 at the current
+    /// poses. Pass the definition to [`World::add_joint`].
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, solver::Revolute, world::World};
@@ -64,8 +64,9 @@ impl World {
         Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
     }
 
-    /// Returns the definition of a gear, rack or pulley without a position error at the current poses. Changes the
-    /// angle of a gear's frame on A, the anchor of a rack on B, or the length of a pulley's rope.
+    /// Returns a copy of the definition of a gear, rack or pulley, adjusted so that the joint has no position error at
+    /// the current poses. Adjusts the angle of a gear's frame on A, the anchor of a rack on B, or the length of a
+    /// pulley's rope.
     ///
     /// # Errors
     /// [`WorldError`] if a body is not in the world or a value is out of range.
@@ -78,7 +79,8 @@ impl World {
 
     /// Replaces the definition of a joint except for its bodies: change a copy of [`crate::solver::Joint::def`]. The
     /// joint keeps its impulses if its kind stays the same and it is enabled. Its angle keeps whole turns if its kind
-    /// stays the same; a rack loses them if it fits better without. A different definition wakes its bodies.
+    /// stays the same, but a rack drops them if its position error is smaller without them. A different definition
+    /// wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the bodies are different, a value is out of range, or a lower limit is
@@ -132,8 +134,8 @@ impl World {
         })
     }
 
-    /// Sets the target speed in rad/s or m/s of a joint's motor. In a motor joint, this is the angular motor. A change
-    /// wakes the bodies.
+    /// Sets the target speed in rad/s or m/s of a joint's motor. For a motor joint, sets the speed of its angular
+    /// motor. A change wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the speed is out of range.
@@ -145,8 +147,8 @@ impl World {
         })
     }
 
-    /// Sets the largest force in N or torque in N m of a joint's motor. In a motor joint, this is the angular motor. A
-    /// change wakes the bodies.
+    /// Sets the largest force in N or torque in N m of a joint's motor. For a motor joint, sets the torque of its
+    /// angular motor. A change wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.

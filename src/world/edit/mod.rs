@@ -31,7 +31,7 @@ impl World {
         self.scratch.meter.spend(u64::try_from(count / SCANNED_PER_WORK).unwrap_or(u64::MAX));
     }
 
-    /// Drops the manifolds of a body whose shapes, pose or centre of mass change.
+    /// Counts the work of [`State::end_manifolds`], and calls it.
     fn end_manifolds(&mut self, body: u32) {
         if !self.state.bodies.at(body).shapes().is_empty() {
             self.spend_scan();
@@ -43,7 +43,8 @@ impl World {
         body.shapes.iter().map(|id| self.state.shapes.at(id.slot()).def())
     }
 
-    /// Checks speeds in m/s and rad/s against the limit. The radius of gyration is in metres.
+    /// Checks a velocity in m/s and an angular velocity in rad/s against the speed limit. The radius of gyration is in
+    /// metres.
     fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
         let max = self.state.config.solver.speed_limit(self.state.config.tick_rate);
         for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
@@ -54,7 +55,7 @@ impl World {
         Ok(())
     }
 
-    /// Checks the rotation of a body against the limit before a change of its mass.
+    /// Checks the angular velocity of a body against the speed limit for its new mass.
     fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
         if body.mass == *mass {
             return Ok(());

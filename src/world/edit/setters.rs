@@ -46,7 +46,7 @@ impl World {
     /// Sets or removes the name of a body, which is shown in reports. It does not affect the simulation.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale or a decoded name is not valid.
+    /// [`WorldError`] if the handle is stale, or if the name was decoded from untrusted bytes and is not valid.
     pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
         name.map_or(Ok(()), |name| name.validate())?;
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);
@@ -124,8 +124,8 @@ impl World {
     }
 
     /// Takes a body out of the simulation until [`World::enable`]. The body keeps its pose and velocity, but loses its
-    /// applied forces and its target, with the velocity towards the target. It has no contacts, its joints are not
-    /// solved, and no query finds it.
+    /// applied forces, its target, and the velocity towards the target. It has no contacts, its joints are not solved,
+    /// and no query finds it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if the body is not in the world.
@@ -185,7 +185,7 @@ impl World {
 
     /// Puts a dynamic body to sleep at any velocity, with the dynamic bodies that contacts, joints and areas connect to
     /// it. Does nothing if [`crate::world::Config::sleeping`] is off, or if a joint connects one of these bodies to a
-    /// moving kinematic body. Contacts are those of the last tick whose shapes still meet after all edits.
+    /// moving kinematic body. A contact of the last tick counts if its shapes still meet after all edits since.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
@@ -201,8 +201,9 @@ impl World {
     }
 
     /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
-    /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. A change of
-    /// the event switches reports the ends of pairs that are no longer reported, and begins of those that now are.
+    /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. If a change of
+    /// the event switches affects touching pairs, the next tick reports an end for each pair that has no events any
+    /// more, and a begin for each pair that now has events.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value or the mass of a dynamic body is out of range, an area is not
@@ -296,7 +297,8 @@ impl World {
         }
     }
 
-    /// Replaces a definition. A pair that it reports differently ends, and begins anew in the next tick.
+    /// Replaces the definition of a shape. If the new definition changes the events of a touching pair, the pair ends,
+    /// and begins anew in the next tick.
     fn redefine_shape(&mut self, slot: u32, def: &ShapeDef) {
         self.spend_scan();
         let list_reported = |state: &State| -> Vec<_> {
@@ -320,7 +322,8 @@ impl World {
         }
     }
 
-    /// Replaces the mass of a body. Drops its manifolds, because lever arms are relative to the centre of mass.
+    /// Replaces the mass of a body. Drops the kept manifolds of its contacts, because lever arms are relative to the
+    /// centre of mass.
     pub(super) fn replace_mass(&mut self, body: u32, mass: MassProperties) {
         if self.state.bodies.at(body).mass != mass {
             self.end_manifolds(body);

@@ -46,7 +46,7 @@ impl World {
         self.convert_impulses(rate(&old), rate(config));
         self.convert_targets(old.tick_rate, config.tick_rate);
         self.state.config = *config;
-        // The restitution threshold of the world is part of the cached surface of a pair.
+        // The cached surface of a pair includes the world's restitution threshold.
         self.scratch.contacts.invalidate_surfaces();
         Ok(())
     }
@@ -74,7 +74,7 @@ impl World {
         }
     }
 
-    /// Converts the velocities of kinematic bodies that reach their targets in the next tick.
+    /// Converts the velocities of kinematic bodies with a target, so that they reach it in one tick of the new length.
     fn convert_targets(&mut self, old_rate: u32, new_rate: u32) {
         if old_rate == new_rate {
             return;
@@ -116,7 +116,7 @@ fn scaled(value: Speed, factor: u32, divisor: u32, max: Speed) -> Speed {
 
 /// Whether bodies at rest may move with the new settings.
 fn is_disturbed(old: &Config, new: &Config) -> bool {
-    // Destructured without `..`, so that a new setting has to be classified here.
+    // Destructures without `..`, so that a new setting causes a compile error until it is considered here.
     let Config {
         tick_rate,
         gravity,

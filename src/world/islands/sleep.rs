@@ -12,7 +12,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     scratch.pairs.non_colliding.refresh(state);
     let Scratch { awake, union, pairs, shapes, meter, .. } = &mut *scratch;
     unite_joined(state, awake, union);
-    // Bodies woken since the last tick have contacts in the list of sleeping contacts.
+    // Contacts of bodies that were woken since the last tick are still in the list of sleeping contacts.
     for contact in state.contacts.iter().chain(state.sleeping_contacts.iter()) {
         let (a, b) = state.bodies_of(contact.shapes);
         if !(connects(state, contact) && is_awake(a) && is_awake(b)) {
@@ -91,7 +91,7 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
         if union.stays_awake(root) {
             continue;
         }
-        // Slots are visited in order, so that the root, the smallest slot of its set, gets its island first.
+        // The root is the smallest slot of its set. Slots are visited in order, so that the root gets its island first.
         let island = match state.bodies.at(root).island {
             Some(island) => island,
             None => state.islands.insert(Island { bodies: Vec::new() }),
@@ -106,7 +106,8 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
     }
     if any {
         scratch.awake.invalidate();
-        // Fat boxes may have ceased to overlap since the last pair update.
+        // Fat boxes may have ceased to overlap since the last pair update, so that the next one must check the sleeping
+        // contacts.
         scratch.pairs.changes.sleeping_contacts_changed();
         put_contacts_to_sleep(state, scratch);
     }

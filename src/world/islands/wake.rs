@@ -22,8 +22,8 @@ pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: Isla
     scratch.awake.invalidate();
 }
 
-/// Wakes a body with its island, and restarts its count of ticks at rest. A resting kinematic body becomes active for a
-/// tick, which wakes all islands on it.
+/// Wakes a body with its island, and restarts its count of ticks at rest. A resting kinematic body becomes active for
+/// one tick, and so wakes all islands on it.
 pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.pairs.changes.compact();
     let body = state.bodies.at_mut(slot);
@@ -39,7 +39,7 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     }
 }
 
-/// Wakes a body after a change beside it that does not concern a kinematic body.
+/// Wakes a body if it is dynamic, after a change in its surroundings that does not concern kinematic bodies.
 fn wake_dynamic(state: &mut State, scratch: &mut Scratch, slot: u32) {
     if state.bodies.at(slot).is_dynamic() {
         wake_body(state, scratch, slot);
@@ -57,8 +57,8 @@ pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     }
 }
 
-/// Wakes a body and the bodies whose fat boxes overlap its own, and restarts their counts of ticks at rest. Called before
-/// and after a change of fat boxes.
+/// Wakes a body and the bodies whose fat boxes overlap its own, and restarts their counts of ticks at rest. Called
+/// before and after a change of fat boxes.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
     for index in 0..state.bodies.at(slot).shapes().len() {
@@ -72,7 +72,8 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     let is_dynamic = state.body_of(shape).is_dynamic();
     scratch.shapes.broad_phase().each_overlap_of(false, state.shapes.at(shape).fat, |other| {
         visited += 1;
-        // A resting kinematic body has to be active only for sensor events of two bodies that do not move.
+        // Wakes a kinematic body only for a sensor pair with another body that is not dynamic: without an active body,
+        // the pair would have no events.
         let is_sensed = || {
             let pair = (shape.min(other), shape.max(other));
             !is_dynamic

@@ -229,7 +229,7 @@ impl World {
     }
 }
 
-/// First touch of a moving shape B with a shape A. `None` also if A is only a seam.
+/// First touch of a moving shape B with a shape A. `None` if they do not touch, or if A is only a seam: see `seam.rs`.
 fn first_touch<'r>(
     [a, b]: [&SupportShape; 2],
     resting: impl FnOnce() -> Option<&'r Resting>,
@@ -256,7 +256,7 @@ struct Ordered<H> {
     hit: H,
 }
 
-/// The earlier of two hits or, if they are simultaneous, the one in the smaller slot.
+/// The earlier of two hits. If both have the same fraction, the hit on the shape in the smaller slot.
 fn earlier<H: Copy>(
     best: Option<Ordered<H>>,
     found: Ordered<H>,

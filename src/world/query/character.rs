@@ -1,19 +1,19 @@
 //! Characters: shapes that a game moves by its own rules, and that slide along the surfaces they meet.
 //!
-//! A move is a cast. At a hit the rest of the translation is deflected along the surface and cast again. Casts stop 0.1
-//! mm before they touch, so that walking does not move a character into a shape. Planes, as in Box2D's `b2SolvePlanes`,
-//! push the character out of shapes that have moved over it. Sliding along planes instead of casts would stop the
-//! character at corners that it just misses.
+//! A move is a cast. At a hit, the rest of the translation is deflected along the surface, and is cast again. Casts
+//! stop 0.1 mm before they touch, so that walking does not move a character into a shape. Planes, as in Box2D's
+//! `b2SolvePlanes`, push the character out of shapes that have moved over it. Sliding along planes instead of casts
+//! would stop the character at corners that it just misses.
 //!
 //! The slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same speed
 //! at any slope. Along other surfaces it slides without being deflected upwards. The rest of a walk into a wall is
 //! dropped.
 //!
-//! A character stores the pose that the body of its ground had at the last move. The next move starts with the
-//! displacement, since the last move, of the point under the character's feet. The velocity of the body would not be
-//! sufficient: that velocity is 0 after [`World::move_to`], and does not give the displacement of a platform that turns
-//! or stops. A character that leaves its ground takes the velocity of the body along. If that velocity is 0, it takes
-//! the displacement since the last move instead, as that of one tick.
+//! A character stores the pose that the body of its ground had at the last move. The next move first displaces the
+//! character by as much as the point under its feet has moved since then. The velocity of the body would not be
+//! sufficient: it is 0 after [`World::move_to`], and does not give the displacement of a platform that turns or stops.
+//! A character that leaves its ground takes the velocity of the body along. If the velocity of a kinematic body is 0,
+//! the character takes the body's displacement since the last move instead, as if it were that of one tick.
 
 use alloc::vec::Vec;
 
@@ -92,9 +92,9 @@ impl Mover {
         self
     }
 
-    /// Sets the distance in metres by which the ground may fall within a tick while the character still follows it,
-    /// clamped to 0 to 100. It should be at least the distance per tick times the tangent of the steepest slope, and at
-    /// least the height of steps to walk down.
+    /// Sets the largest drop of the ground in metres that the character follows within a tick, clamped to 0 to 100. The
+    /// distance should be at least the distance walked per tick times the tangent of the steepest slope, and at least
+    /// the height of steps to walk down.
     #[must_use]
     pub fn snap_distance(mut self, distance: Fx) -> Self {
         self.snap_distance = distance.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -153,7 +153,8 @@ pub struct MoverState {
     pub velocity: Vec2<Fx>,
     /// The ground that the character stands on, if any.
     pub ground: Option<MoverPlane>,
-    /// Whether the character is inside a shape that is solid from one side, and passes on until it is out of it.
+    /// Whether the character overlaps a shape that is solid from one side. It then passes through until it has left the
+    /// shape.
     pub is_passing: bool,
 }
 

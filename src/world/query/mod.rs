@@ -72,7 +72,7 @@ pub struct QueryFilter {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialOverlap {
-    /// A ray reports such shapes, at fraction 0. A cast reports those into which it would move deeper.
+    /// A ray reports such shapes, at fraction 0. A cast reports only the shapes into which it would move deeper.
     #[default]
     Resist,
     /// Rays and casts report such shapes, at fraction 0.

@@ -4,9 +4,10 @@
 //! minimise |x - target|²   subject to   s_i + n_i . x >= 0
 //! ```
 //!
-//! for planes with separations `s_i` and normals `n_i`. A plane with a limited push is soft: the mover may enter it. If
-//! there are soft planes, or no point is outside of all planes, the planes push along their normals in turn for at most
-//! 64 rounds (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
+//! Here `x` is the translation, and `s_i` and `n_i` are the separations and the normals of the planes. A plane with a
+//! limited push is soft: the mover may enter it. If there are soft planes, or no point is outside of all planes, the
+//! planes push along their normals in turn for at most 64 rounds (C. Hildreth, "A Quadratic Programming Procedure",
+//! 1957), as in Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 
@@ -55,7 +56,7 @@ pub struct MoverPlane {
     pub body_position: Vec2<Fx>,
     /// Rotation of the body at the time of the query.
     pub body_angle: Angle,
-    /// Velocity of the surface at `point` in m/s, including its surface speed. A body that was moved by
+    /// Velocity of the surface at `point` in m/s, including the surface speed of its material. A body that was moved by
     /// [`World::move_to`] has no velocity after the tick.
     pub velocity: Vec2<Fx>,
     /// Outward normal, towards the mover.
@@ -144,9 +145,9 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 /// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
 /// `push`.
 ///
-/// The result is exact except for rounding if all planes are rigid and some point is outside of all of them. If not,
-/// the planes push in turn, which converges if two normals differ by 25 to 155 degrees. At other angles, or between two
-/// walls, the result may lie inside a plane: follow it with a cast.
+/// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. If not,
+/// the planes push in turn. This iteration converges for two planes whose normals differ by 25 to 155 degrees. At other
+/// angles, or between two walls, the result may be behind a plane: check it by a cast.
 #[must_use]
 pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     match nearest_outside(wanted, planes) {
@@ -227,18 +228,18 @@ fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     translation
 }
 
-/// Returns the velocity nearest to a given one that does not enter the rigid planes with a positive `push`. The result
-/// does not depend on the order of the planes, unlike in Box2D's `b2ClipVector`.
+/// Returns the velocity nearest to a given one without a component into the planes that are rigid and have a positive
+/// `push`. The result does not depend on the order of the planes, unlike in Box2D's `b2ClipVector`.
 #[must_use]
 pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
     let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);
     clipped(velocity, rigid.map(|plane| plane.normal))
 }
 
-/// The vector nearest to `v` with no component against the normals. Such vectors form a cone: the result is `v`, its
-/// projection on a border of the cone, or zero.
+/// The vector nearest to `v` with no component against the normals. All vectors without such a component form a cone:
+/// the result is `v`, its projection on a border of the cone, or zero.
 pub(super) fn clipped(v: Vec2<Fx>, normals: impl Iterator<Item = Vec2<Unit>> + Clone) -> Vec2<Fx> {
-    // The normal is rounded, so that a projected vector keeps a component along it.
+    // Tolerance: normals are rounded, so that a vector projected onto a plane keeps a small component along its normal.
     let size = v.x.saturating_abs().max(v.y.saturating_abs());
     let rounding = (size >> 26_u32) + Fx::DELTA * 4;
     let is_free = |w: Vec2<Fx>| normals.clone().all(|n| n.widen().dot(w) >= -rounding);

@@ -154,7 +154,7 @@ impl World {
     }
 }
 
-/// Nearest points in the world of two shapes that are relative to an origin.
+/// The nearest points, in the world, of two shapes that are given relative to an origin.
 pub(super) fn proximity(a: &SupportShape, b: &SupportShape, origin: Vec2<Fx>) -> ClosestPoints {
     let found = distance(a, b);
     ClosestPoints {

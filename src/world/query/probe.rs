@@ -21,7 +21,7 @@ impl Probe {
     /// A geometry with the origin of its coordinates at a position in the world, in metres.
     ///
     /// # Errors
-    /// [`GeometryError`] if its size is out of range.
+    /// [`GeometryError`] if the size of the geometry is out of range.
     pub fn new(geometry: impl Into<Geometry>, position: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
         let position = position.into();
         let geometry = geometry.into();

@@ -1,12 +1,13 @@
 //! Seams: casts along a floor of many shapes do not stop where two shapes meet.
 //!
-//! A body at rest lies a little lower than the surface, so that a cast along the floor would meet the side of the next
-//! tile or chain link. A hit of a cast that starts in contact is therefore confirmed by a second cast, from where the
+//! A body at rest sinks slightly into the floor, so that a cast along the floor would meet the side of the next tile or
+//! chain link. If a cast starts in contact, a second cast therefore confirms its hit. The second cast starts where the
 //! shape just rests on the touched surfaces. An obstacle that the second cast does not meet is a seam.
 //!
-//! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. It is not
-//! lifted off a surface that the cast moves into, which stops it. Between a floor and a ceiling the shape cannot be
-//! lifted off both, so that there is also a second cast for each surface alone.
+//! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. A surface that
+//! the cast moves into stops the cast, so that the shape is not lifted off this surface. Between a floor and a ceiling
+//! the shape cannot be lifted off both. Each of several touched surfaces therefore gets another cast, for which the
+//! shape is lifted off this surface alone.
 
 use smallvec::SmallVec;
 
@@ -40,7 +41,8 @@ impl Rest {
     pub(super) const TURNING: Rest =
         Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
-    /// For characters, which must not approach: each cast would bring a character closer to the surface.
+    /// For characters. Their casts must not approach a surface that they slide along: each cast would bring the
+    /// character closer.
     pub(super) const CHARACTER: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 
@@ -62,7 +64,7 @@ impl Rest {
 /// Depth in metres up to which an overlap counts as a contact.
 const DEPTH_MAX: Fx = fx!(0.02);
 
-/// The second casts.
+/// The second casts of a probe: see the description of the module.
 pub(super) struct Resting {
     /// The shape at the start of the first cast, relative to the position of the probe.
     moving: SupportShape,
@@ -86,7 +88,7 @@ impl Resting {
 }
 
 impl World {
-    /// The second casts of a probe. `None` if it touches nothing.
+    /// The second casts of a probe. `None` if the probe touches no shape.
     pub(super) fn resting(
         &self,
         probe: &Probe,

@@ -173,7 +173,8 @@ impl Probe {
     }
 
     /// Returns the contact manifold with another shape, as the solver gets it for shapes at rest. Empty if the surfaces
-    /// are more than `margin` metres apart, or if both shapes are segments or links. `margin` is clamped to 0 to 15.
+    /// are more than `margin` metres apart, or if both shapes are segments or links. `margin` is clamped to the range 0
+    /// to 15.
     #[must_use]
     #[doc(alias = "collide")]
     pub fn manifold(&self, other: &Probe, margin: Fx) -> Manifold {

@@ -21,8 +21,8 @@ impl World {
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
     /// The probe stops 0.1 to 0.15 mm before it touches. A shape that the probe touches at the start stops the probe
-    /// once it has moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m from
-    /// its position, hits may be early.
+    /// once the probe has moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m
+    /// from its position, hits may be reported too early.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};
@@ -78,7 +78,7 @@ impl World {
 }
 
 impl Turning {
-    /// Fraction of the first touch with a shape that is not a seam.
+    /// Fraction at which the probe first touches a shape. `None` if it does not, or if the shape is only a seam.
     fn first_touch(
         &self,
         other: &PosedShape,
@@ -103,8 +103,8 @@ impl Turning {
         Some(fraction)
     }
 
-    /// Fraction of the first touch. A search that does not end counts as a hit where it gives up, so that the probe
-    /// passes through no shape.
+    /// Fraction of the first touch. If the search gives up, the fraction that it has reached counts as a hit. Otherwise
+    /// the probe might pass through a shape.
     fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, sweep: &Sweep) -> Option<Fx> {
         let still = Sweep::fixed(centre);
         match first_impact((other, &still), (&self.support, sweep), SKIN, StartPolicy::Resist) {

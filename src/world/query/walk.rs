@@ -20,7 +20,7 @@ const TURNS_MAX: u32 = 8;
 /// Length in metres below which the rest of a translation is dropped.
 const LEFT_OVER: Fx = fx!(0.000001);
 
-/// Largest distance in metres from ground on which a character stands: the gap of casts and its rounding.
+/// Largest distance in metres between a character and ground on which it stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
 
 /// Effect on a cast of the shapes that overlap the character.
@@ -97,8 +97,9 @@ impl<'a> Walk<'a> {
             self.advance(hit.map_or(by, |(travelled, _)| travelled));
         }
         // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
-        // velocity is 0, the displacement counts as that of one tick. This is for a body moved by `World::move_to`, but
-        // also applies to a fixed or resting body that `World::set_transform` has placed elsewhere.
+        // velocity of a kinematic body is 0, the displacement counts as that of one tick. This is meant for a body
+        // moved by `World::move_to`, but also applies to a body at rest that `World::set_transform` has placed
+        // elsewhere.
         let mut velocity = body.velocity_at(ground.point);
         if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
             let rate = i64::from(self.world.state.config.tick_rate);
@@ -219,7 +220,7 @@ impl<'a> Walk<'a> {
                         self.along = Some(n);
                     }
                 }
-                // A wall does not turn a walk upwards.
+                // A wall does not deflect a walking character upwards.
                 Surface::Steep | Surface::Wall if self.on_ground && !self.rises() => {
                     if (n.x < 0) == (left.x > 0) && n.x != 0 {
                         left = Vec2::new(Fx::ZERO, left.y.min(Fx::ZERO));
@@ -231,8 +232,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Removes the horizontal component of a vector that points into a steep slope, so that it is not deflected
-    /// upwards.
+    /// If a vector points into a steep slope, removes its horizontal component. Otherwise the slope would deflect the
+    /// vector upwards.
     fn stopped_by_steep(&self, v: Vec2<Fx>) -> Vec2<Fx> {
         let against = |(surface, plane): &(Surface, MoverPlane)| {
             *surface == Surface::Steep && (plane.normal.x < 0) != (v.x < 0) && plane.normal.x != 0
@@ -240,8 +241,8 @@ impl<'a> Walk<'a> {
         if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
     }
 
-    /// Normals that limit a translation (`ground_too`) or a velocity (not `ground_too`). While the character walks, the
-    /// only ground among them is that along which it walks.
+    /// Normals of the surfaces that limit a translation (if `ground_too`) or a velocity (if not). While the character
+    /// walks, the ground along which it walks is the only ground among these surfaces.
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
@@ -331,8 +332,8 @@ impl<'a> Walk<'a> {
         self.probe = self.probe.at(self.probe.position() + by);
     }
 
-    /// Whether the character passes through a shape that is solid from one side. It passes if it is on the other side,
-    /// or if it has been passing and still overlaps the shape.
+    /// Whether the character passes through a shape that is solid from one side. The character passes if it comes from
+    /// the open side, or if it has been passing and still overlaps the shape.
     fn passes(&self, id: ShapeId, normal: Vec2<Unit>, separation: Fx) -> bool {
         let Some(shape) = self.world.shape(id) else { return true };
         let direction = shape.one_way().zip(self.world.body(shape.body()));
@@ -341,14 +342,16 @@ impl<'a> Walk<'a> {
         is_open || self.from.is_passing && is_solid_from_one_side(shape) && self.is_deep(separation)
     }
 
-    /// Whether shapes overlap too deeply for a character that has just come onto ground, as in [`OneWay`].
+    /// Whether an overlap exceeds the slack: a character that has just come onto ground may overlap it by less. The
+    /// slack has the same purpose as in [`OneWay`].
     ///
     /// [`OneWay`]: crate::collision::OneWay
     fn is_deep(&self, separation: Fx) -> bool {
         separation < -self.world.state.config.touching_distance()
     }
 
-    /// Whether the character overlaps a shape that it is passing through, or that the mask leaves out for a while.
+    /// Whether the character overlaps a shape that is solid from one side by more than the slack. Ignores the mask of
+    /// the filter, because a game may leave a platform out of it for some ticks to let the character drop through.
     pub(super) fn is_passing(&self) -> bool {
         let (posed, origin) = (self.probe.posed(), self.probe.position());
         let own = SupportShape::of(&posed, origin);

@@ -5,8 +5,8 @@
 //! follow (u8), and these parts: force and torque (3 x i64), island (2 x u32), target (2 x i64, u32).
 //!
 //! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box in units of 2^-22 m (4 x i32),
-//! relative to the body's centre, rounded down to this grid. A box off the grid or too far away has `i32::MIN` as its
-//! first coordinate, and follows in full (4 x i64) after all others.
+//! relative to the body's centre, rounded down to this grid. For a box off the grid or too far away, the first
+//! coordinate is `i32::MIN`, and the whole box (4 x i64) follows after the records of all shapes.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -25,8 +25,8 @@ const TARGET: u8 = 4;
 const BODY_BYTES: usize = 36;
 const OPTIONAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
-/// Number of bodies in a block. The boxes of a block are packed right after its bodies, whose centres are then in the
-/// processor's cache.
+/// Number of bodies in a block. The boxes of a block are packed right after its bodies, while the centres of the bodies
+/// are in the processor's cache.
 const BLOCK: usize = 32;
 /// Marker in place of the first coordinate of a box that follows in full.
 const NOT_NEAR: i32 = i32::MIN;
@@ -34,7 +34,7 @@ const NOT_NEAR: i32 = i32::MIN;
 type Bodies = Arena<Body, BodyId>;
 type Shapes = Arena<Shape, ShapeId>;
 
-/// A copy of a body without the parts that a tick changes.
+/// A copy of a body in which the parts that ticks change are 0 or `None`.
 pub(super) fn lasting_body(body: &Body) -> Body {
     let mut body = body.clone();
     set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]).record());
@@ -42,7 +42,7 @@ pub(super) fn lasting_body(body: &Body) -> Body {
     body
 }
 
-/// A copy of a shape without its fat box, unless the body is fixed.
+/// A copy of a shape. If its body is not fixed, the copy has the default box in place of the fat box.
 pub(super) fn lasting_shape(shape: &Shape, bodies: &Bodies) -> Shape {
     let fat = if is_fixed(shape, bodies) { shape.fat } else { Aabb::default() };
     Shape { fat, ..shape.clone() }
@@ -238,7 +238,7 @@ fn corners(fat: Aabb) -> [Fx; 4] {
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     const GRID: i64 = 1 << FAT_GRID_SHIFT;
     const LOWEST: i64 = (i32::MIN as i64) << FAT_GRID_SHIFT;
-    /// Mask of the bits that may be set in the difference of a packable coordinate and the lowest one.
+    /// Mask of the bits that may be set in the difference of a packable coordinate and the lowest packable one.
     const NEAR: i64 = (u32::MAX as i64) << FAT_GRID_SHIFT;
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
@@ -247,7 +247,7 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;
-    // The lowest value of the first coordinate is the marker `NOT_NEAR`.
+    // Also rejects the lowest value of the first coordinate, which would be packed as the marker `NOT_NEAR`.
     let bits = a | a.wrapping_sub(GRID) | b | c | d;
     (bits & !NEAR == 0).then(|| above.map(|above| low_half(above >> FAT_GRID_SHIFT) ^ i32::MIN))
 }

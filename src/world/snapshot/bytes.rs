@@ -12,7 +12,7 @@ const MAGIC: [u8; 8] = *b"LS2DWRLD";
 const FORMAT: u32 = 4;
 const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
-/// Reason why bytes were refused as a world.
+/// Reason why [`World::from_bytes`] refuses bytes.
 ///
 /// ```
 /// use lockstep2d::world::{SnapshotError, World};

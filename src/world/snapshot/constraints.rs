@@ -85,7 +85,7 @@ fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -
     contact
 }
 
-/// A copy of a joint without the parts that a tick changes.
+/// A copy of a joint without impulses and with 0 turns, because ticks change both.
 pub(super) fn lasting_joint(joint: &Joint) -> Joint {
     Joint::new(*joint.def)
 }
@@ -94,7 +94,8 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
         let mut there = 0;
-        // Each word is written; if it is 0, the next word overwrites it. Branches here would be unpredictable.
+        // Writes every impulse, but advances `count` only if the impulse is not 0: the next word overwrites a 0. A
+        // branch would be unpredictable.
         let (mut words, mut count) = ([0i32; 8], 0);
         for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
             let bits = impulse.to_bits();

@@ -108,7 +108,7 @@ impl HashedState {
         HashedState { state, digest: OnceBox::new() }
     }
 
-    /// The state, for `const` functions.
+    /// Returns the state. Unlike `Deref`, this method can be called in `const` functions.
     pub(crate) const fn get(&self) -> &State {
         &self.state
     }

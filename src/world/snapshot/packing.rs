@@ -76,8 +76,8 @@ pub(super) fn put_records<T, const N: usize>(
     }
 }
 
-/// Writes an unknown number of records. The old content is overwritten, not cleared, so that reuse costs only what is
-/// written.
+/// Writes an unknown number of records. Overwrites the old content without clearing it first, so that the cost depends
+/// only on the bytes written.
 pub(super) struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
     len: usize,
@@ -90,7 +90,7 @@ impl<'a> Writer<'a> {
         Writer { bytes, len: 0 }
     }
 
-    /// Appends the part of a record of `N` bytes that `write` fills.
+    /// Appends a record of at most `N` bytes: those that `write` puts into it.
     #[inline(always)]
     pub(super) fn record<const N: usize>(&mut self, write: impl FnOnce(&mut Record<'_, N>)) {
         if self.bytes.len() < self.len + N {
@@ -114,7 +114,7 @@ impl Drop for Writer<'_> {
     }
 }
 
-/// The rest of a buffer. Reading past the end is a bug, and gives zeros.
+/// The unread rest of a buffer. Reading a record past the end is a bug, and gives zeros.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 

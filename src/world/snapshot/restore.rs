@@ -9,20 +9,20 @@ use crate::world::World;
 use crate::world::cache::{JointLinks, Scratch};
 use crate::world::state::State;
 
-/// Slots with outdated caches, unsorted and possibly repeated.
+/// Slots whose caches a restore has made outdated, unsorted and possibly repeated.
 #[derive(Default)]
 pub(super) struct Stale {
-    /// Bodies with another rotation.
+    /// Bodies whose rotation has changed.
     rotated: Vec<u32>,
-    /// Bodies with the same rotation at another position, and the displacement.
+    /// Bodies whose position has changed, but not their rotation, with the displacement in metres.
     shifted: Vec<(u32, Vec2<Fx>)>,
-    /// Shapes with another fat box, and that box.
+    /// Shapes whose fat box has changed, with the new box.
     boxes: Vec<(u32, Aabb)>,
-    /// Bodies in pages that differ.
+    /// Slots of bodies in pages that the restore has replaced.
     redefined_bodies: Vec<u32>,
-    /// Shapes in pages that differ.
+    /// Slots of shapes in pages that the restore has replaced.
     redefined_shapes: Vec<u32>,
-    /// Whether a page of joints differs.
+    /// Whether the restore has replaced a page of joints.
     any_joint: bool,
 }
 
@@ -44,7 +44,7 @@ impl World {
     }
 }
 
-/// Replaces a state by that of a snapshot, and lists the slots that differ.
+/// Replaces a state by that of a snapshot, and lists in `stale` the slots that change.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;

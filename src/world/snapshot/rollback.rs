@@ -15,9 +15,9 @@ use crate::world::state::{Island, Reported, State};
 
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
-/// It shares unchanged data with the world and with other snapshots. Its own memory is mainly 36 bytes for each body,
-/// 16 for each shape of a body that is not fixed, and 8 for each pair, or 88 for each pair with contact points: see
-/// [`Snapshot::rollback_bytes`].
+/// A snapshot shares unchanged data with the world and with other snapshots. Its own memory is mainly 36 bytes for each
+/// body, 16 for each shape of a body that is not fixed, and 8 for each pair, or 88 for each pair with contact points:
+/// see [`Snapshot::rollback_bytes`].
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -41,8 +41,8 @@ pub struct Snapshot {
     pub(super) packed: Packed,
     /// Digest of all other fields except `changes`.
     pub(super) digest: WorldDigest,
-    /// Changes since the last pair update. They are not part of the state, but spare the next pair update of a restored
-    /// world a check of every pair.
+    /// Changes since the last pair update. They are not part of the state. Because of them, the next pair update of a
+    /// restored world need not check every pair.
     pub(super) changes: Changes,
 }
 
@@ -130,7 +130,7 @@ impl Snapshot {
 
     /// Replaces the snapshot by a copy of a state. Reuses the memory and the unchanged pages.
     pub(super) fn take(&mut self, state: &State, changes: &Changes) {
-        // Destructured, so that a new field does not compile until it is saved.
+        // Destructures without `..`, so that a new field causes a compile error until it is saved.
         let State {
             config: _,
             tick: _,

@@ -16,7 +16,7 @@ pub(super) struct StateView<'a>(pub(super) &'a State);
 
 impl Serialize for StateView<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        // Destructured, so that a new field does not compile until it is in the view.
+        // Destructures without `..`, so that a new field causes a compile error until it is in the view.
         let State {
             config,
             tick,
@@ -85,7 +85,7 @@ struct Sections<'a, B, S, J, C, R, I> {
     vacant: VacantSlots,
 }
 
-/// Items as a map, in their order.
+/// Serializes items as a map, in their order.
 struct Entries<F>(F);
 
 impl<F, I, V> Serialize for Entries<F>

@@ -124,7 +124,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("a velocity along a locked axis"))?;
-    // Along a locked axis, the target is the centre.
+    // Targets have the same tolerance: along a locked axis, a target has the coordinate of the centre of mass.
     let reachable = |target: &Pose| body.kind == BodyKind::Kinematic && nearly_inside(target.centre);
     check(body.target.as_deref().is_none_or(reachable), || {
         at("a target outside the world or of a body that is not kinematic")
@@ -135,7 +135,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(mass == body.mass, || at("its mass does not follow from its shapes"))
 }
 
-/// Checks shapes before bodies, whose masses depend on valid shapes.
+/// Must be called before bodies are checked, because their masses depend on valid shapes.
 fn check_shapes(state: &State) -> Result<(), Violation> {
     let mut listed = alloc::vec![false; state.shapes.slot_count()];
     for (id, body) in state.bodies.iter() {
@@ -154,7 +154,8 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
         check(shape.fat.is_valid(), || {
             format!("shape {id}: the upper corner of its fat box is below the lower one")
         })?;
-        // The grid excludes a box that covers all numbers, which would overlap `Aabb::NOWHERE`.
+        // This also rejects a box that covers all numbers, which would overlap `Aabb::NOWHERE`: its corners are off the
+        // grid.
         check(shape.fat == shape.fat.rounded_out(FAT_GRID_SHIFT), || {
             format!("shape {id}: a corner of its fat box is off the grid")
         })?;
@@ -227,7 +228,7 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
         let solid = state.sensor_of(contact.shapes).is_none();
         check(solid || contact.count == 0, || at("impulses at a sensor"))?;
         check(contact.count <= 2, || at("more than 2 points"))?;
-        // Impulses are found by feature, so that two points with one feature would share one impulse.
+        // Impulses are looked up by feature id: two points with the same feature would share one impulse.
         let [first, second] = &contact.points;
         check(contact.count < 2 || first.feature != second.feature, || at("two points with one feature"))?;
         let limit = crate::solver::IMPULSE_MAX;

@@ -70,7 +70,7 @@ fn time_ahead(state: &State) -> Fx {
 struct Sum<'a> {
     state: &'a State,
     body: &'a Body,
-    /// Pose relative to the body's own centre.
+    /// Predicted pose of the body. The origin is its predicted centre of mass.
     pose: RelativePose,
     /// Predicted centre of mass in the world.
     centre: Vec2<Fx>,
@@ -80,7 +80,7 @@ struct Sum<'a> {
     has_area: bool,
     /// Mass of the displaced medium in kg.
     displaced: Fx,
-    /// First moment of the displaced mass about the body's centre.
+    /// First moment of the displaced mass about the body's centre of mass, in kg m.
     moment: Vec2<Fx>,
     effect: AreaEffect,
     /// Acceleration in m/s² that acts on the medium as well as on the body.
@@ -161,7 +161,7 @@ impl<'a> Sum<'a> {
         self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
     }
 
-    /// Adds the effects on the whole body, scaled by the share of it that is in the area.
+    /// Adds the effects on the whole body, scaled by the share of the body that is in the area.
     fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, pose: &RelativePose, share: Fx) {
         let mut field = pose.rotation.apply_wide(area.acceleration);
         if let Some(attraction) = &area.attraction {
@@ -182,7 +182,7 @@ impl<'a> Sum<'a> {
         self.is_on_moving_ground |= !medium.is_dynamic() && medium.is_moving();
     }
 
-    /// Adds buoyancy, which depends on the field of all areas.
+    /// Adds buoyancy, which depends on the sum of the fields of all areas.
     fn finished(mut self) -> Self {
         debug_assert!(is_awake(self.body), "areas act on awake bodies");
         self.effect.force -= self.field.scale(self.displaced);
@@ -202,7 +202,7 @@ fn pose_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> RelativePose {
     }
 }
 
-/// Acceleration towards the point `to`, which is relative to the body.
+/// Acceleration towards the point `to`, which is in metres relative to the body's centre of mass.
 fn pull(attraction: &Attraction, to: Vec2<Fx>) -> Vec2<Fx> {
     let Attraction { acceleration, radius, falloff } = *attraction;
     let Some((direction, distance)) = to.normalized_with_length() else { return Vec2::ZERO };

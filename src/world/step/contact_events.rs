@@ -1,5 +1,6 @@
-//! Contact and hit events, and ends of sensor overlaps by edits and the pair update. They are reported before the
-//! bodies are moved. Other sensor events follow in `sensor_events.rs`.
+//! Contact events, hit events, and the ends of sensor overlaps that edits or the pair update have caused. The step
+//! reports these events before it moves the bodies. It reports the other sensor events afterwards: see
+//! `sensor_events.rs`.
 
 use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};
@@ -11,7 +12,7 @@ use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
 /// Reports pairs that begin or cease to touch. A pair touches if it is near at the start of the tick, or if the solver
-/// has pushed it apart, because a fast bounce may begin and end within the tick.
+/// has pushed it apart. The second condition covers a fast bounce, which may begin and end within the tick.
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
     let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());
@@ -65,7 +66,7 @@ fn is_with_sensor(motion: &MotionCache, contact: &Contact) -> bool {
     motion.shape(contact.shapes.0).sensor || motion.shape(contact.shapes.1).sensor
 }
 
-/// Like [`State::reported`], but does not read solid shapes.
+/// Like [`State::reported`], but reads only the motion cache for a pair of solid shapes.
 fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Reported> {
     if is_with_sensor(motion, contact) {
         return state.reported(contact);

@@ -23,7 +23,7 @@ use crate::world::state::State;
 /// Movement of points in a tick, in metres, up to which a body is not fast, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
-/// Work units of a time of impact: some 2 µs, up to 10 µs for long thin shapes that rotate.
+/// Work units of a search for a time of impact, which takes some 2 µs, or up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
 /// Number of shapes near a sweep that together cost one work unit.
@@ -94,15 +94,15 @@ pub(super) fn swept_pose(
     (impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact)), impact.is_some())
 }
 
-/// An obstacle, ordered by fraction, then by slot.
+/// The impact on an obstacle, ordered by fraction, then by the slot of the obstacle's shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Impact {
     fraction: Fx,
     obstacle: u32,
 }
 
-/// The pose of a body after an impact. A kinematic obstacle carries it for the rest of the tick, a dynamic one does
-/// not.
+/// The pose of a body after an impact. A kinematic obstacle carries the body for the rest of the tick. A dynamic
+/// obstacle does not.
 fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
     let body = state.bodies.at(swept.slot);
@@ -171,7 +171,8 @@ fn first_impact(
                 }
                 let &mut (support, target) = support_and_target.get_or_insert_with(|| {
                     let support = SupportShape::of(posed, body.centre);
-                    // A quarter of the depth at which the shape's centre would be on the surface, at most 5 mm.
+                    // The target depth is a quarter of the depth at which the shape's centre would be on the surface,
+                    // but at most 5 mm.
                     (support, -(support.inner_radius() / 4).min(fx!(0.005)))
                 });
                 if !shapes.poses().at(other).is_solid_from(body.centre + support.middle()) {
@@ -182,7 +183,8 @@ fn first_impact(
                 }
                 let fraction = match time_of_impact(&there, &movement, &support, &swept.sweep, target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
-                    // The fraction is safe. At 0 it is ignored, so that the body does not get stuck.
+                    // The shapes do not touch before this fraction. A fraction of 0 is ignored, so that the body does
+                    // not get stuck.
                     TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
                     TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
                 };
@@ -202,14 +204,14 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_overlap_of(true, area, visit);
         }
-        // Visits are counted after the search of a shape, which may therefore exceed the budget. It visits at most all
-        // shapes of the world.
+        // Counts the visits only after the search, which may therefore exceed the budget. One search visits each shape
+        // of the world at most once.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first
 }
 
-/// A shape relative to its body's centre at the start of the tick, and its movement within the tick.
+/// A shape at the start of the tick, relative to its body's centre, and the movement of the body within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
     let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
@@ -220,7 +222,7 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The smaller of the possible rotations.
+    // The angles give the rotation only up to whole turns: takes the smallest rotation.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let support = support.rotated(Rot::from_angle(start.angle - body.angle));
     (support, Sweep { start: start.centre, end: body.centre, turn })
@@ -259,7 +261,7 @@ fn has_one_way(motion: &MotionCache, shapes: [u32; 2]) -> bool {
     shapes.into_iter().any(|shape| motion.shape(shape).one_way)
 }
 
-/// Whether a one-way shape lets the other shape pass that meets it in the tick. The normal points from A to B.
+/// Whether one of two shapes is a one-way shape that lets the other one pass. The normal points from A to B.
 fn lets_pass(state: &State, [a, b]: [u32; 2], normal: Vec2<Unit>) -> bool {
     let is_open_to = |shape: u32, normal: Vec2<Unit>| {
         let direction = state.shapes.at(shape).one_way();

@@ -153,7 +153,7 @@ impl Sources<'_> {
     }
 }
 
-/// Completes the work whose order matters.
+/// Does the work whose order affects the result, on the calling thread.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));

@@ -4,7 +4,8 @@
 //! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. With the normal and the lever
 //! arms at the start, an impact would change angular momentum and energy. The shapes are therefore advanced, at their
 //! initial velocities, to the time at which they touch, and collided there. The separations are then converted back to
-//! the start of the tick, along the constraint rows of the new manifold:
+//! the start of the tick, along the constraint rows of the new manifold. With `f` the fraction of the tick at which the
+//! shapes touch, the separation `s` at the start is
 //!
 //! ```text
 //! s(0) = s(f) + f (approach in the tick)
@@ -55,7 +56,8 @@ impl SpeculativePair<'_> {
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
     }
 
-    /// Replaces the manifold if the shapes touch within the tick. Returns the displacements of the bodies until then.
+    /// If the shapes touch within the tick, replaces the manifold by that at the time of impact. Returns the
+    /// displacements of the bodies until then, or `None` if the manifold stays as it is.
     #[cold]
     pub(super) fn move_to_impact(
         &self,
@@ -100,7 +102,7 @@ impl SpeculativePair<'_> {
     }
 }
 
-/// A contact point that closes, and its approach in a whole tick.
+/// The separation of a contact point, and its approach in a whole tick.
 struct ClosingPoint {
     separation: Step,
     distance: i64,

@@ -33,7 +33,7 @@ impl World {
         }
     }
 
-    /// [`World::step`] with an observer that is called at the beginning of each phase. Such a tick adds nothing to
+    /// Like [`World::step`], but calls `begin` at the beginning of each phase. The tick adds nothing to
     /// [`World::phase_digests`].
     ///
     /// ```
@@ -90,7 +90,8 @@ impl World {
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
-        // Without the budget for the sub-steps, they are skipped, and the caller discards the result.
+        // If the budget does not cover the sub-steps, the tick skips them, and the caller that set the budget discards
+        // the state.
         let sub_steps = if can_solve { settings.sub_steps } else { 0 };
         solver.sub_steps(first_sub_step, sub_steps, &tuning, &mut state.contacts);
         solver.store_joints(&mut state.joints);
@@ -107,7 +108,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // A snapshot from outside may have any tick.
+        // A decoded snapshot may have any tick, even the largest.
         state.tick = state.tick.wrapping_add(1);
     }
 }

@@ -60,7 +60,7 @@ struct Job<'a> {
     first: u32,
 }
 
-/// The near contacts of a block, one bit each.
+/// The near contacts of a block, whose shapes may meet within the tick: one bit each.
 #[derive(Clone, Copy)]
 struct NearContacts {
     /// Index in the job of the first contact.
@@ -106,7 +106,7 @@ impl NearContacts {
 }
 
 impl NarrowPhase<'_> {
-    /// Whether joints change the motion of a body in the tick, so that the place of its impact is not known.
+    /// Whether joints change the motion of a body in the tick, so that the place of its impact cannot be predicted.
     fn is_held(&self, side: &Side<'_>) -> bool {
         side.body.is_dynamic() && self.awake.is_held(side.shape.body().slot())
     }
@@ -310,7 +310,7 @@ fn keep_reachable(
             return;
         }
     }
-    // Few contacts need their posed shapes, which are large.
+    // The closure avoids reading the posed shapes, which are large and which few contacts need.
     pair.keep_reachable(manifold, poses.motion(), || [poses.at(a), poses.at(b)]);
 }
 
@@ -322,8 +322,8 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// The hit event of a fast approach. It is reported if the shapes push each other. `moved_by` is the displacement of
-/// the bodies from the start of the tick to the manifold.
+/// The hit event of a fast approach. It is reported if the shapes push each other. `moved_by` has the displacements of
+/// the bodies from the start of the tick until the time of the manifold.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,

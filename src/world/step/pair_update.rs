@@ -10,7 +10,7 @@ use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, S
 use crate::world::state::State;
 
 pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    // Also without changes: the world may have been restored.
+    // Necessary even without changes, because the world may have been restored.
     scratch.pairs.non_colliding.refresh(state);
     // Pairs that were left out at the limit are added as soon as there is room.
     if !(scratch.pairs.changes.any() || state.pairs_left_out) {
@@ -27,8 +27,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves sleeping contacts with an active body to the fresh contacts. Ends those that may no longer collide, for
-/// example after an edit has moved a kinematic body with a sensor.
+/// Moves sleeping contacts with an active body to the fresh contacts. Ends sleeping contacts whose shapes may no longer
+/// collide, for example after an edit has moved a kinematic body with a sensor.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();

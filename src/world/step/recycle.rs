@@ -21,16 +21,16 @@ pub(super) struct Recycling<'a> {
 }
 
 impl<'a> Recycling<'a> {
-    /// An arm is kept while it changes by at most a 64th of the smaller shape's extent. A manifold is kept while the
-    /// relative movement, including that in this tick, is at most that 64th and at most a quarter of the speculative
-    /// distance.
+    /// A lever arm is kept while it changes by at most a 64th of the smaller shape's extent. A manifold is kept while
+    /// the relative movement, including that in this tick, is at most that 64th and at most a quarter of the
+    /// speculative distance.
     ///
-    /// If a round shape may roll on a body that is not dynamic, both limits are a 256th of that 64th: an outdated
-    /// normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between dynamic bodies the
-    /// limits are not reduced, because plates on rollers are stable only with kept arms.
+    /// If a round shape may roll on a body that is not dynamic, both limits are a 256th of that 64th. Otherwise an
+    /// outdated normal would stop a slow ball at a seam between two blocks, and would let a roly-poly toy lean. Between
+    /// dynamic bodies the limits are not reduced, because plates on rollers are stable only if lever arms are kept.
     ///
-    /// Nothing is kept on a kinematic body that turns, because arms that lag behind give the wrong velocity at the
-    /// contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
+    /// Nothing is kept on a kinematic body that turns, because lever arms that lag behind give the wrong velocity at
+    /// the contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
     #[inline]
     pub(super) fn new(
         state: &'a State,
@@ -65,7 +65,7 @@ impl<'a> Recycling<'a> {
         };
         let kept = &contact.kept;
         let separations = kept.separations_at([side(0), side(1)], contact.count, self.movement_max)?;
-        // The arm of a fixed body may be out of range.
+        // Uses a dynamic body, because the lever arm of a fixed body may be out of range.
         let [a, b] = self.bodies;
         let (centre, arm) = if b.is_dynamic() { (b.centre, kept.arm_b) } else { (a.centre, kept.arm_a) };
         Some(Recycled { origin: centre.wrapping_add(arm.widen()), separations })
@@ -74,7 +74,7 @@ impl<'a> Recycling<'a> {
     #[inline]
     pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
         let tolerance = |shape: &ShapeMotion| match shape.disc || self.rolls {
-            // The arm of a circle follows from the normal, so that both are kept together.
+            // The lever arm of a circle follows from the normal: both are kept up to the same movement.
             true => self.movement_max.max(Length::ZERO),
             false => self.arm_tolerance,
         };

@@ -1,8 +1,8 @@
 //! Sensor events: shapes that overlap a sensor at the end of the tick, or that crossed it during the tick.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
-//! those of overlapping fat boxes, which cover the predicted motion. A shape that has left its fat box is also compared
-//! with all shapes along its path.
+//! The search follows every pair with a sensor from the poses at the start of the tick to the poses at its end. It
+//! takes the pairs of overlapping fat boxes, because fat boxes cover the predicted motion. It also compares each shape
+//! that has left its fat box with all shapes along its path.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::world::events::{Events, SensorEvent};
 use crate::world::islands::contact_ended;
 use crate::world::state::{Side, State};
 
-/// Work units of following a pair without a contact.
+/// Work units of [`Visit::of`] for a pair without a contact.
 const UNFORESEEN_WORK: u64 = 16;
 
 /// Number of comparisons of shapes outside of their fat boxes that together cost one work unit.
@@ -94,7 +94,7 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // Without an overlap during the tick, an edit has moved one of the bodies.
+            // If the shapes do not overlap during the tick, an edit has parted them before it.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
@@ -139,7 +139,8 @@ impl MovedShape {
             Ok(index) => {
                 let start = scratch.sweeps.starts[index];
                 let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
-                // A body that was stopped, or has a target, makes the smaller of the possible rotations.
+                // The rotation of the solver does not lead to the final angle if a sweep has stopped the body or the
+                // body had a target. The body then makes the smallest rotation that leads to it.
                 let short = (body.angle - start.angle).to_turns().to_bits();
                 let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
                 let turn = if is_complete { solved } else { short };
@@ -182,8 +183,8 @@ impl MovedShape {
     }
 }
 
-/// Reports crossings between shapes that have left their fat box and shapes without a contact with them. A pair that
-/// overlaps at the end of the tick becomes a contact, or is left out at the pair limit.
+/// Reports the sensor pairs without a contact that have crossed or overlap because a shape has left its fat box. A pair
+/// that overlaps at the end of the tick becomes a contact, or is left out at the pair limit.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;

@@ -10,8 +10,8 @@ use crate::world::state::State;
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
 
-/// Returns the approach of two bodies in a tick at a point of their contact, along the normal. With `x` the
-/// translation, `t` the rotation and `r` the lever arm of each body,
+/// Returns a function that gives the approach of two bodies in a tick at a point of their contact, along the normal.
+/// With `x` the translation, `t` the rotation and `r` the lever arm of each body, the approach is
 ///
 /// ```text
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
@@ -49,7 +49,7 @@ fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
     i64::from(x.to_bits())
 }
 
-/// Number of fraction bits of a rotation times a lever arm beyond those of a step.
+/// Number of fraction bits that a rotation times a lever arm has in excess of a `Step`.
 const TURN_BITS: u32 = Travel::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
 pub(super) struct SpeculativePair<'a> {
@@ -83,8 +83,8 @@ impl SpeculativePair<'_> {
         self.margins.touching.min(self.a.slack).min(self.b.slack)
     }
 
-    /// Removes points that are not reached within the tick. Speculative contacts would otherwise deflect shapes that
-    /// pass by each other at high speed.
+    /// Removes the points that the bodies do not reach within the tick. Speculative contacts would otherwise deflect
+    /// shapes that pass by each other at high speed.
     #[inline(always)]
     pub(super) fn keep_reachable<'p>(
         &self,
@@ -109,8 +109,8 @@ impl SpeculativePair<'_> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let closing_at = approach(motions[0], motions[1], manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
-        // Largest approach at a point that acts within the tick. Shapes that overlap by more than the slack do not pass
-        // by each other.
+        // Largest approach at a point that may get an impulse within the tick. Shapes that overlap by more than the
+        // slack do not pass by each other.
         let mut fastest = 0;
         manifold.retain(|point| {
             let separation = raw(point.separation);

@@ -8,7 +8,7 @@ use crate::world::islands::wake_island;
 use crate::world::state::State;
 
 /// Wakes the islands that active bodies touch, then the islands that the woken bodies touch, and so on. Each round
-/// after the first checks only pairs of bodies woken in the previous round.
+/// after the first checks only pairs of bodies woken in the previous round. Returns whether an island was woken.
 pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     if state.islands.len() == 0 {
         return false;

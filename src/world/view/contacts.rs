@@ -98,7 +98,7 @@ impl World {
 }
 
 impl ContactView<'_> {
-    /// Returns the force at each point of the manifold in the last sub-step of the tick, without impulses of bounces.
+    /// Returns the force at each point of the manifold in the last sub-step of the tick, without restitution impulses.
     pub fn forces(&self) -> impl Iterator<Item = (&ManifoldPoint, ContactForce)> {
         let mass = self.reduced_mass();
         self.accelerations().map(move |(point, [normal, friction])| {

@@ -56,8 +56,8 @@ impl World {
     /// The error is the distance of the anchors for a revolute joint or a weld with rigid anchors, the offset across
     /// the axis for a prismatic or wheel joint, the deviation from the allowed lengths for a distance joint, the
     /// distance of the teeth along the pitch line for a gear or rack, and the missing length of the rope for a pulley.
-    /// For a gear without a pitch point it is an angle in radians. Springs, motors and the limits of other kinds do not
-    /// count.
+    /// For a gear without a pitch point, the error is an angle in radians. Springs, motors and the limits of other
+    /// kinds do not count.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {

@@ -20,13 +20,14 @@ pub(crate) struct AddedWork {
 
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, as far as it is known before the tick.
-    /// `bodies` and `shapes` are the largest numbers of bodies and shapes added before it.
+    /// `bodies` and `shapes` are the largest numbers of bodies and shapes that may be added before the tick.
     /// [`Game::work`](crate::lockstep::Game::work) can be based on the result.
     ///
     /// The bound is the number of bodies, pairs and joints, times the solver's sub-steps and iterations, plus 4 for
     /// each pair, 1 for each shape, 1/16 for each slot of a handle, and 8 for the tick. In the product, each pair
-    /// beyond 32 per body counts as 65. Finding pairs, and solving new pairs and the pairs of bodies that wake, is
-    /// counted within the tick, if [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
+    /// beyond 32 per body counts as 65. The bound does not include the work of finding pairs and of solving new pairs
+    /// and the pairs of woken bodies. A verifier counts this work during the tick, if
+    /// [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -55,7 +56,7 @@ impl World {
         [solved, shapes, narrow_phase, self.scan_work()].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Work units of visiting all slots, which stay when bodies, shapes, joints and islands are removed.
+    /// Work units of visiting all slots. A slot remains when its body, shape, joint or island is removed.
     pub(crate) fn scan_work(&self) -> u64 {
         let State { bodies, shapes, joints, islands, .. } = &*self.state;
         let slots = [bodies.slot_count(), shapes.slot_count(), joints.slot_count(), islands.slot_count()];

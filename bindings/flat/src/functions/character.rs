@@ -1,4 +1,4 @@
-//! Characters, moved by the game's own rules.
+//! Characters, which a game moves by its own rules.
 
 use lockstep2d::world::World;
 
@@ -23,8 +23,8 @@ api! {
     }
 
     /// Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
-    /// the velocity. `from` and `state` may point to the same struct. The surfaces met are written to `met` in order.
-    /// If that buffer is too short, the state is written nevertheless.
+    /// the velocity. `from` and `state` may point to the same struct. Writes the new state to `state`, and the surfaces
+    /// that the character meets to `met`, in order. If `met` is too short, the state is written nevertheless.
     fn ls2d_move_character(
         world: u32,
         mover: In<'_, RawMover>,

@@ -41,8 +41,8 @@ api! {
     }
 
     /// Makes the links of a chain through some points. If `closed` is not 0, the last point is connected with the
-    /// first. If `one_sided` is not 0, only the right side is solid, looking along the points. The other properties are
-    /// those of `base`, whose geometry does not matter.
+    /// first. If `one_sided` is not 0, the chain is solid only from the right, looking along the points. The links take
+    /// all other properties from `base`, whose geometry is ignored.
     fn ls2d_chain_links(
         base: In<'_, RawShapeDef>,
         points: In<'_, RawVec2>,
@@ -75,8 +75,8 @@ api! {
         links.set_all(capacity, &mut count, &made)
     }
 
-    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Null
-    /// pointers are not written. At least one shape must have both an area and a density.
+    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for an `ls2d_body_def`. Each
+    /// pointer to a result may be null. At least one shape must have both an area and a density.
     fn ls2d_shapes_mass(
         shapes: In<'_, RawShapeDef>,
         shape_count: usize,

@@ -43,8 +43,8 @@ fn row(id: RawBody, body: &Body) -> [f64; 5] {
 }
 
 api! {
-    /// Poses of all enabled bodies in slot order, for drawing, five numbers each: handle, x, y, angle in rad, and 1 if
-    /// awake, otherwise 0. `capacity` and `count` are numbers of `double`s.
+    /// Poses of all enabled bodies in slot order, for drawing. A pose has five numbers: handle, x and y in metres,
+    /// angle in rad, and 1 if the body is awake, otherwise 0. `capacity` and `count` are numbers of `double`s.
     fn ls2d_draw_poses(world: u32, rows: Out<'_, f64>, capacity: usize, count: Out<'_, usize>) {
         let (mut rows, mut count) = (rows, count);
         with(world, |world: &mut World| {

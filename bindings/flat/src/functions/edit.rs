@@ -13,7 +13,8 @@ use crate::records::{RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawPose, 
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
 
-/// Executes a command, or adds it to a list and returns `None`.
+/// If the target is a world, executes the command and returns its outcome. If the target is a list, adds the command to
+/// the list and returns `None`.
 fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
     with_any(target, |object| match object {
         Object::World(world) => Ok(Some(world.execute(&command)?)),
@@ -25,7 +26,8 @@ fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
     })
 }
 
-/// Checks that all handles can be written, before anything is added.
+/// Checks that the caller's buffer has room for all new handles. Called before the edit, so that an error changes
+/// nothing.
 fn check_room<T: Plain>(ids: &Out<'_, T>, capacity: usize, needed: usize) -> Outcome {
     if ids.is_null() {
         return Ok(());
@@ -78,7 +80,7 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Replaces a list of commands by an encoded one, which may come from any source.
+    /// Replaces the contents of a list of commands by an encoded list, which may come from any source.
     fn ls2d_commands_decode(commands: u32, data: In<'_, u8>, size: usize) {
         let decoded: Vec<Command> = codec::decode(data.slice(size)?)?;
         with(commands, |Commands(list)| {
@@ -87,8 +89,8 @@ api! {
         })
     }
 
-    /// Executes a list of commands in order. Refused commands are skipped, and their number is written to `refused`,
-    /// unless that pointer is null.
+    /// Executes a list of commands in order. Skips commands that the world refuses, and writes their number to
+    /// `refused`, unless this pointer is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
         refused.check_if_wanted()?;
@@ -98,7 +100,7 @@ api! {
         })
     }
 
-    /// Adds a body with its shapes. The body's handle is written, unless the pointer is null or the target is a list.
+    /// Adds a body with its shapes. Writes the body's handle to `id`, unless `id` is null or the target is a list.
     fn ls2d_spawn(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -115,9 +117,9 @@ api! {
         }
     }
 
-    /// Adds a body at each pose, all with one definition. If one body is refused, none is added. A recording stores the
-    /// definition once. The fields `body` and `flags` of the poses are not read. The handles are written, unless the
-    /// pointer is null or the target is a list.
+    /// Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
+    /// A recording stores the definition only once. The fields `body` and `flags` of the poses are not read. Writes the
+    /// handles of the bodies to `ids`, unless `ids` is null or the target is a list.
     fn ls2d_spawn_each(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -142,7 +144,7 @@ api! {
     /// Removes a body with its shapes and joints.
     fn ls2d_despawn(target: u32, body: RawBody) { body_commands!(target, body, Despawn) }
 
-    /// Adds a shape to a body. The shape's handle is written, unless the pointer is null or the target is a list.
+    /// Adds a shape to a body. Writes the shape's handle to `id`, unless `id` is null or the target is a list.
     fn ls2d_add_shape(target: u32, body: RawBody, shape: In<'_, RawShapeDef>, id: Out<'_, RawShape>) {
         let mut id = id;
         id.check_if_wanted()?;
@@ -157,12 +159,12 @@ api! {
         edit(target, Command::RemoveShape { shape: shape.id()? }).map(|_| ())
     }
 
-    /// Changes a shape.
+    /// Replaces the definition of a shape.
     fn ls2d_set_shape(target: u32, shape: RawShape, def: In<'_, RawShapeDef>) {
         edit(target, Command::SetShape { shape: shape.id()?, def: def.get()?.def()? }).map(|_| ())
     }
 
-    /// Adds a joint. Its handle is written, unless the pointer is null or the target is a list.
+    /// Adds a joint. Writes the joint's handle to `id`, unless `id` is null or the target is a list.
     fn ls2d_add_joint(target: u32, joint: In<'_, RawJointDef>, id: Out<'_, RawJoint>) {
         let mut id = id;
         id.check_if_wanted()?;
@@ -172,9 +174,10 @@ api! {
         }
     }
 
-    /// Adds a joint between each pair of bodies, all with one definition. If one joint is refused, none is added. A
-    /// recording stores the definition once. `ends` has the two bodies of each joint in turn. The handles are written,
-    /// unless the pointer is null or the target is a list.
+    /// Adds a joint between each pair of bodies, all with one definition. If the world refuses one of the joints, it
+    /// adds none of them. A recording stores the definition only once. `ends` contains body A and body B of the first
+    /// joint, then those of the second joint, and so on; `end_count` is the number of bodies. Writes the handles of the
+    /// joints to `ids`, unless `ids` is null or the target is a list.
     fn ls2d_add_joint_each(
         target: u32,
         joint: In<'_, RawJointDef>,
@@ -187,7 +190,8 @@ api! {
         let (pairs, []) = ends.slice(end_count)?.as_chunks() else {
             return Err(value("the number of ends of joints", end_count));
         };
-        // The bodies of the definition have no effect, and may be `LS2D_NO_ID`.
+        // The bodies in the definition are ignored. They may be `LS2D_NO_ID`, which `def` would refuse, so they are
+        // replaced.
         let [body_a, body_b] = pairs.first().copied().unwrap_or([RawBody(0); 2]);
         let joint = RawJointDef { body_a, body_b, ..joint.get()? }.def()?;
         let pair = |&[a, b]: &[RawBody; 2]| Ok((a.id()?, b.id()?));
@@ -205,7 +209,7 @@ api! {
         edit(target, Command::RemoveJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Changes a joint, but not its bodies.
+    /// Replaces the definition of a joint. The bodies of the joint cannot be changed.
     fn ls2d_set_joint(target: u32, joint: RawJoint, def: In<'_, RawJointDef>) {
         edit(target, Command::SetJoint { joint: joint.id()?, def: def.get()?.def()? }).map(|_| ())
     }
@@ -254,13 +258,14 @@ api! {
         edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Moves a kinematic body to a pose during the next tick.
+    /// Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle.
     fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+    /// Sets all settings of a body: damping, gravity scale, locks, continuous collision detection, sleep. The other
+    /// fields of `def` have no effect.
     fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }
@@ -270,8 +275,8 @@ api! {
         edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
     }
 
-    /// Sets the mass of a body: from the definition if it has `LS2D_BODY_GIVEN_MASS`, otherwise from the body's shapes.
-    /// Other fields of the definition have no effect.
+    /// Sets the mass of a body. If `def` has `LS2D_BODY_GIVEN_MASS`, its three mass fields are used, otherwise the mass
+    /// of the body's shapes. The other fields of `def` have no effect.
     fn ls2d_set_mass(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         let def = def.get()?;
         def.settings()?;
@@ -283,7 +288,7 @@ api! {
         edit(target, Command::SetUserData { body: body.id()?, user_data }).map(|_| ())
     }
 
-    /// Sets the name of a body. A length of 0 removes it.
+    /// Sets the name of a body. A length of 0 removes the name.
     fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
         let text = text.text(length)?;
         let name = if text.is_empty() { None } else { Some(Name::new(text)?) };
@@ -307,18 +312,19 @@ api! {
         edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
     }
 
-    /// Replaces the settings of a world. Refused as a whole if a limit differs from that of the world. A recording
-    /// refuses another tick rate as well.
+    /// Replaces the settings of a world. If a limit differs from the limit in the world, all settings are refused. A
+    /// recording also refuses a different tick rate.
     fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
         edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
     }
 
-    /// Applies impulses away from a point.
+    /// Applies the impulses of an explosion to dynamic bodies, away from its centre, and wakes these bodies.
     fn ls2d_explode(target: u32, explosion: In<'_, RawExplosion>) {
         edit(target, Command::Explode { explosion: explosion.get()?.explosion()? }).map(|_| ())
     }
 
-    /// Sets the defaults of an explosion at a point: radius and falloff of 1 m, all categories.
+    /// Sets the defaults of an explosion: radius and falloff of 1 m, all categories. The centre is a point of the world
+    /// in metres. `impulse` is in N s per metre of the width of a shape.
     fn ls2d_explosion_init(x: RawFx, y: RawFx, impulse: RawFx, explosion: Out<'_, RawExplosion>) {
         let mut explosion = explosion;
         explosion.set(RawExplosion::new(vector(x, y), impulse.fx()))

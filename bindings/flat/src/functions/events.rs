@@ -48,8 +48,8 @@ api! {
         copy(world, |world| &world.events().contact_end, RawContactEvent::of, events, capacity, count)
     }
 
-    /// Pairs of shapes that hit each other, if one of them has `LS2D_SHAPE_HIT_EVENTS`, sorted by shape A, then by
-    /// shape B.
+    /// Pairs of shapes that hit each other at the world's `hit_speed` or faster, if one of them has
+    /// `LS2D_SHAPE_HIT_EVENTS`. Sorted by shape A, then by shape B.
     fn ls2d_events_hits(world: u32, events: Out<'_, RawHitEvent>, capacity: usize, count: Out<'_, usize>) {
         copy(world, |world| &world.events().hits, RawHitEvent::of, events, capacity, count)
     }

@@ -1,6 +1,6 @@
 //! Recorders for games whose rules are written in another language: the calling program, the host, simulates the game.
 //!
-//! A checkpoint is a hash of the host's state hash and of all inputs so far.
+//! A checkpoint contains one hash, computed from the host's state hash and all inputs so far.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -68,7 +68,7 @@ impl Game for HostGame {
     }
 }
 
-/// A recorder of a host's game; `None` once it is finished.
+/// A recorder of a host's game. Its field `recorder` is `None` once the recording is finished.
 pub(crate) struct HostRecorder {
     recorder: Option<Recorder<HostGame>>,
     game: HostGame,
@@ -100,7 +100,7 @@ impl HostRecorder {
     }
 }
 
-/// Whether players and bytes of an input are in range.
+/// Whether the number of players and the number of bytes of an input are in range.
 pub(super) fn are_possible(players: u32, input_bytes: u32) -> bool {
     (1..=64).contains(&players) && (1..=512).contains(&input_bytes)
 }
@@ -152,9 +152,9 @@ api! {
         recorder.set(table::add(HostRecorder { recorder: Some(started), game, input_bytes })?)
     }
 
-    /// Records the final inputs of the next tick, all players in order. `absent` has a bit for each absent player,
-    /// whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash after
-    /// this tick.
+    /// Records the final inputs of the next tick, those of all players in order. `absent` has a bit for each absent
+    /// player, whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
+    /// after this tick.
     fn ls2d_recorder_record(
         recorder: u32,
         inputs: In<'_, u8>,
@@ -181,7 +181,7 @@ api! {
         })
     }
 
-    /// Takes the finished bytes, to be appended to the file.
+    /// Returns the bytes finished since the last call, which the caller appends to the file.
     fn ls2d_recorder_take(recorder: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
@@ -190,7 +190,7 @@ api! {
     }
 
     /// Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
-    /// 256 results with different names. They can be read without playing the replay.
+    /// 256 results with different names. The results can be read without playing the replay.
     fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(recorder, |recorder: &mut HostRecorder| {

@@ -18,7 +18,7 @@ use crate::table::{self, Bytes, with};
 
 /// By default, a replay is divided into at most this many intervals, with a saved state at each boundary.
 const SAVES: u64 = 256;
-/// No default interval is shorter than this, in ticks.
+/// Shortest default interval, in ticks.
 const SAVE_INTERVAL: u64 = 60;
 
 /// Consecutive ticks with equal inputs.
@@ -31,8 +31,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Inputs of all players, zeros for absent ones. A run does not store these zeros, so that a replay with absent
-    /// players does not take many times the size of its file in memory.
+    /// Inputs of all players, with zeros for absent ones. A run does not store these zeros: otherwise a replay with
+    /// absent players would need many times the size of its file in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];
@@ -48,7 +48,7 @@ struct Checkpoint {
     inputs: StateHash,
 }
 
-/// A replay that a host plays.
+/// A replay of a game that a host simulates.
 pub(crate) struct HostReplay {
     setup: HostSetup,
     runs: Vec<Run>,
@@ -59,7 +59,7 @@ pub(crate) struct HostReplay {
     pub(super) tick: u64,
     /// Tick of the last comparison; `None` before the first one and after loading a state.
     pub(super) compared: Option<u64>,
-    /// Number of checkpoints, from the first on without a gap, that the state hashes matched.
+    /// Number of checkpoints before the first one that the host's state hashes have not matched yet.
     equal: usize,
     pub(super) failed: Option<Verdict>,
     /// Claims that the host has added.
@@ -132,7 +132,7 @@ impl HostReplay {
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
         if checkpoint_hash(hash, inputs) == stored {
             self.compared = Some(tick);
-            // Checkpoints after a skipped one do not count, because the skipped one has not been compared.
+            // If an earlier checkpoint was skipped, this one does not count.
             self.equal += usize::from(index == self.equal);
             return Ok(());
         }
@@ -189,7 +189,8 @@ fn read_setup(reader: &Reader<'_>) -> Result<HostSetup, Verdict> {
     setup.ok_or(Verdict::Malformed { offset: 0, flaw: Flaw::Setup })
 }
 
-/// Decodes a run: the inputs of the present players, and a bit for each absent player, whose list of bytes is empty.
+/// Decodes the inputs of a run. Returns the inputs of the present players, and a bit for each absent player. The
+/// encoded input of an absent player is an empty list of bytes.
 fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
     let (players, input_bytes) = (setup.2, usize::try_from(setup.4).ok()?);
     let mut list = u64::from(players).to_le_bytes().to_vec();
@@ -202,8 +203,8 @@ fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
 }
 
 api! {
-    /// Opens a replay of a game with its own rules, from any source. If it cannot be played, its verdict is written,
-    /// the handle is 0, and the result is `LS2D_RECORD`.
+    /// Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
+    /// verdict is written, the handle is 0, and the result is `LS2D_RECORD`.
     fn ls2d_replay_open(
         data: In<'_, u8>,
         size: usize,
@@ -217,7 +218,8 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as a bytes object, and numbers that describe the replay. Pointers except `rules` may be null.
+    /// Name of the rules as a bytes object, and numbers that describe the replay. All pointers except `rules` may be
+    /// null.
     fn ls2d_replay_rules(
         replay: u32,
         rules: Out<'_, u32>,
@@ -248,8 +250,8 @@ api! {
         bytes.set(table::add(Bytes(setup))?)
     }
 
-    /// Name (a bytes object) and number of a result that the file states. Results are in ascending order of names. They
-    /// are true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
+    /// Name (a bytes object) and number of a result in the file, such as a score. Results are in ascending order of
+    /// their names, and are verified only if the verdict is `LS2D_MATCH`. `LS2D_NONE` if there are no more results.
     fn ls2d_replay_claim_at(replay: u32, index: u32, name: Out<'_, u32>, number: Out<'_, i64>) {
         let (mut name, mut number) = (name, number);
         name.check()?;
@@ -290,13 +292,14 @@ api! {
         with(replay, |replay: &mut HostReplay| replay.check(hash))
     }
 
-    /// Adds a result of the game that was played. `ls2d_replay_verdict` compares the results with those in the file.
+    /// Adds a result of the game that the host has simulated. `ls2d_replay_verdict` compares the results with those in
+    /// the file.
     fn ls2d_replay_claim(replay: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(replay, |replay: &mut HostReplay| claim(&mut replay.claims, name, number))
     }
 
-    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is that of the current state.
+    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state.
     fn ls2d_replay_verdict(replay: u32, hash: In<'_, RawHash>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;
         let hash = hash.get()?.hash();

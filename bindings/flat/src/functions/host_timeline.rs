@@ -1,4 +1,5 @@
-//! Seeking in replays of games whose rules are written in another language. The host fulfils requests, as in a match.
+//! Seeking in replays of games whose rules are written in another language. The calling program, the host, fulfils
+//! requests, as in a match.
 
 use super::host_replay::HostReplay;
 use crate::border::Out;
@@ -19,7 +20,8 @@ impl HostReplay {
             let failure = || value("without an earlier saved state, the tick to go to", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A step forwards by one tick is played, so that the game can show its events.
+        // A saved state is not loaded for a step of one tick: the game simulates the tick, so that it can show the
+        // events.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -35,7 +37,8 @@ impl HostReplay {
         request(kind, self.tick, self.run().map_or(0, |run| run.absent))
     }
 
-    /// Updates the position after a request. A checksum request changes nothing, and is repeated until it is answered.
+    /// Updates the position after a request. A checksum request changes nothing, and is repeated until the host passes
+    /// the hash.
     fn fulfil(&mut self, request: RawRequest) {
         match request.kind {
             REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
@@ -53,8 +56,8 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 }
 
 api! {
-    /// Sets the tick to go to: the number of ticks after which the state is wanted. `ls2d_replay_next_request` then
-    /// returns requests. Before the first request, the game has to be in its first state.
+    /// Starts seeking to the state after `tick` ticks. `ls2d_replay_next_request` then returns the requests that lead
+    /// to this state. Before the first request, the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {
@@ -66,9 +69,9 @@ api! {
         })
     }
 
-    /// The next request on the way: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
-    /// `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick is reached.
-    /// `LS2D_RECORD` if the game has diverged from the file at that tick or before.
+    /// The next request of a seek: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
+    /// `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick of `ls2d_replay_seek`
+    /// is reached. `LS2D_RECORD` if the game has diverged from the file at or before this tick.
     fn ls2d_replay_next_request(
         replay: u32,
         request: Out<'_, RawRequest>,

@@ -15,14 +15,14 @@ thread_local! {
 }
 
 api! {
-    /// Version of this API, to be equal to `LS2D_API_VERSION` of the header.
+    /// Version of the API in the library. It has to equal `LS2D_API_VERSION` of the header.
     fn ls2d_api_version() -> u32 { API_VERSION }
 
     /// Version of the engine's arithmetic: programs with different versions compute different states.
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
-    /// Copies the text of the last failure or verdict on this thread as UTF-8 without a final zero, cut to the buffer.
-    /// Writes the length of the whole text in bytes.
+    /// Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
+    /// too short, the text is cut. `length` is the length of the whole text in bytes.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();
@@ -57,9 +57,9 @@ api! {
         bytes.set(table::add(Bytes(data.slice(size)?.to_vec()))?)
     }
 
-    /// Address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory, for callers that
-    /// cannot allocate memory. Each thread has one such buffer. A call with a larger size may move the buffer, but
-    /// keeps its contents.
+    /// A buffer for callers that cannot allocate memory themselves, such as JavaScript. Returns the address of `size`
+    /// bytes with an alignment of 8, or 0 if there is not enough memory. Each thread has one such buffer. A call with a
+    /// larger size may move the buffer, but keeps its contents.
     fn ls2d_scratch(size: usize) -> usize {
         SCRATCH.with_borrow_mut(|scratch| {
             let words = size.div_ceil(size_of::<u64>()).max(1);

@@ -1,4 +1,4 @@
-//! Matches: the session with inputs, states and packets as bytes. The caller transports packets and fulfils requests.
+//! Matches: sessions whose inputs, states and packets are bytes. The caller transports packets and fulfils requests.
 
 use std::collections::VecDeque;
 
@@ -106,8 +106,8 @@ fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
 }
 
 api! {
-    /// Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
-    /// start once two seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers.
+    /// Sets the defaults of a match: lockstep at 60 ticks per second, inputs of one byte, and a start as soon as two
+    /// seats (or the only one) are taken. The caller sets `peer`, `key` and `secret` to random numbers.
     fn ls2d_match_config_init(seats: u32, config: Out<'_, RawMatchConfig>) {
         let mut config = config;
         let number = u8::try_from(seats).map_err(|_| value("the number of seats", seats))?;
@@ -116,7 +116,7 @@ api! {
         config.set(RawMatchConfig::of(&defaults))
     }
 
-    /// Opens a match. All peers pass the same `offer`, for example versions, rules and setup, of at most 512 bytes.
+    /// Opens a match. `offer` is data of at most 512 bytes that all peers have to agree on, such as rules and setup.
     fn ls2d_match_host(config: In<'_, RawMatchConfig>, offer: In<'_, u8>, offer_size: usize, handle: Out<'_, u32>) {
         let mut handle = handle;
         handle.check()?;
@@ -147,7 +147,7 @@ api! {
         handle.set(table::add(Match::new(Endpoint::join(config, identity, role, contact)?))?)
     }
 
-    /// Sends the request to join to the participant at the address `contact`.
+    /// Requests to join a match through the participant at the address `contact`. Discards a match in progress.
     fn ls2d_match_ask(handle: u32, contact: In<'_, u8>, contact_size: usize) {
         let contact = address(&contact, contact_size)?;
         with(handle, |game: &mut Match| {
@@ -156,7 +156,7 @@ api! {
         })
     }
 
-    /// Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases.
+    /// Processes a packet that arrived from the address `from`. `now` is a time in microseconds that never decreases.
     fn ls2d_match_receive(
         handle: u32,
         now: u64,
@@ -181,7 +181,7 @@ api! {
         })
     }
 
-    /// Writes 1 if `ls2d_match_advance` is due, otherwise 0.
+    /// Writes 1 if `ls2d_match_advance` has to be called now, otherwise 0.
     fn ls2d_match_is_due(handle: u32, now: u64, due: Out<'_, u32>) {
         let mut due = due;
         with(handle, |game: &mut Match| {
@@ -189,11 +189,11 @@ api! {
         })
     }
 
-    /// Issues the inputs of your own seats in order, and plays a tick if that is possible: `LS2D_REQUEST_ADVANCE` is
-    /// then among the next requests. Writes 1 to `issued` if the inputs were issued. Otherwise they may be passed
-    /// again. Inputs that were issued count for one tick: forget key presses then. While the input delay grows,
-    /// `ls2d_match_is_due` remains 1, and further calls ask for the inputs of the additional ticks before a tick is
-    /// played. Without own seats, `size` is 0.
+    /// Issues the inputs of this peer's seats, in order of the seats, and plays a tick if possible: the next requests
+    /// then contain `LS2D_REQUEST_ADVANCE`. Writes 1 to `issued` if the inputs were issued; otherwise the same inputs
+    /// may be passed again. Issued inputs count for one tick, so clear recorded key presses then. While the input delay
+    /// grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of one more tick before the next
+    /// tick is played. For a peer without seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         issued.check_if_wanted()?;
@@ -204,8 +204,8 @@ api! {
         })
     }
 
-    /// The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`, the
-    /// inputs of all seats are written to the buffer. `LS2D_NONE` if there is none.
+    /// The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`,
+    /// writes the inputs of all seats to `inputs`. `LS2D_NONE` if there is no request.
     fn ls2d_match_next_request(
         handle: u32,
         request: Out<'_, RawRequest>,
@@ -237,7 +237,7 @@ api! {
     }
 
     /// The next packet, of at most 1200 bytes, and its destination, an address of at most 32 bytes. `LS2D_NONE` if
-    /// there is none.
+    /// there is no packet.
     fn ls2d_match_next_packet(
         handle: u32,
         to: Out<'_, u8>,
@@ -259,7 +259,7 @@ api! {
         })
     }
 
-    /// The next event. `LS2D_NONE` if there is none.
+    /// The next event. `LS2D_NONE` if there is no event.
     fn ls2d_match_next_event(handle: u32, event: Out<'_, RawMatchEvent>) {
         let mut event = event;
         event.check()?;
@@ -276,7 +276,7 @@ api! {
         with(handle, |game: &mut Match| wants.set(game.endpoint.wants_state().into()))
     }
 
-    /// Offers the state after a number of final ticks to peers that join.
+    /// Offers the encoded state after `tick` final ticks to peers that join.
     fn ls2d_match_offer_state(handle: u32, tick: u32, state: In<'_, u8>, size: usize) {
         let state = state.slice(size)?.to_vec();
         with(handle, |game: &mut Match| {
@@ -295,7 +295,7 @@ api! {
     }
 
     /// Numbers of ticks: `played` ticks were played, `last` ticks have final inputs, and `confirmed` ticks were played
-    /// with final inputs. Null pointers are not written.
+    /// with final inputs. Each pointer may be null.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
@@ -312,7 +312,7 @@ api! {
         with(handle, |game: &mut Match| seats.set(game.endpoint.session().map_or(0, Session::seats)))
     }
 
-    /// The final inputs of all seats for a tick. `LS2D_NONE` if they are not final or not kept.
+    /// The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet or no longer stored.
     fn ls2d_match_final_inputs(
         handle: u32,
         tick: u32,
@@ -329,8 +329,8 @@ api! {
         })
     }
 
-    /// Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
-    /// loss in thousandths. Null pointers are not written.
+    /// Delay of this peer's inputs in ticks. For the link to `peer`: smoothed round-trip time in microseconds, and loss
+    /// in thousandths. Each pointer may be null. `LS2D_NONE` if there is no such peer.
     fn ls2d_match_link(
         handle: u32,
         peer: u32,
@@ -348,7 +348,7 @@ api! {
         })
     }
 
-    /// Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`.
+    /// Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`, to inform the other peers.
     fn ls2d_match_leave(handle: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.leave();
@@ -356,7 +356,7 @@ api! {
         })
     }
 
-    /// Requests an end of the match after a number of ticks. The request is sent two seconds before that tick. Until a
+    /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
     /// majority has decided on the end, other peers can get seats.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
@@ -365,7 +365,7 @@ api! {
         })
     }
 
-    /// Requests a pause, or, with 0, withdraws the request.
+    /// Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on.
     fn ls2d_match_pause(handle: u32, paused: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.pause(paused != 0);
@@ -381,7 +381,7 @@ api! {
         })
     }
 
-    /// Votes for removing the player with this key, while this peer has a vote.
+    /// Votes for removing the player with this key. The vote counts only while this peer is a voter.
     fn ls2d_match_kick(handle: u32, key: u64) {
         with(handle, |game: &mut Match| {
             game.session()?.kick(Key(key));

@@ -1,4 +1,4 @@
-//! Mathematics on raw numbers, for rules of games without floats.
+//! Mathematics on fixed-point numbers, for the rules of games, which cannot use floats.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -33,7 +33,7 @@ api! {
         number.set(RawFx::of(parsed))
     }
 
-    /// Writes a number as exact decimal text, and the length of the text.
+    /// Writes a number as exact decimal text, and the length of the text in bytes.
     fn ls2d_fx_format(number: RawFx, text: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut text, mut length) = (text, length);
         text.set_all(capacity, &mut length, number.fx().to_string().as_bytes())
@@ -105,10 +105,10 @@ api! {
     /// Angle of a vector from the x axis; 0 for the zero vector.
     fn ls2d_angle_of(x: RawFx, y: RawFx) -> RawAngle { RawAngle::of(Angle::of(Vec2::new(x.fx(), y.fx()))) }
 
-    /// An angle of a number of degrees.
+    /// The angle of a number of degrees.
     fn ls2d_angle_from_degrees(degrees: RawFx) -> RawAngle { RawAngle::of(Angle::from_degrees(degrees.fx())) }
 
-    /// An angle of a number of radians.
+    /// The angle of a number of radians.
     fn ls2d_angle_from_radians(radians: RawFx) -> RawAngle { RawAngle::of(Angle::from_radians(radians.fx())) }
 
     /// Degrees of an angle, above -180 and up to 180.
@@ -117,7 +117,7 @@ api! {
     /// Radians of an angle, above -pi and up to pi.
     fn ls2d_angle_to_radians(angle: RawAngle) -> RawFx { RawFx::of(angle.angle().to_radians()) }
 
-    /// Makes a random number generator, to be kept in the state of the game.
+    /// Makes a random number generator, which the game keeps as part of its state.
     fn ls2d_rng_init(seed: u64, rng: Out<'_, RawRng>) {
         let mut rng = rng;
         rng.set(described(&Rng::new(seed))?)

@@ -25,19 +25,20 @@ fn copy_shapes(
 }
 
 api! {
-    /// Sets the defaults of a query, which does not see sensors.
+    /// Sets the defaults of a query filter, with which a query sees all shapes except sensors.
     fn ls2d_query_filter_init(filter: Out<'_, RawQueryFilter>) {
         let mut filter = filter;
         filter.set(RawQueryFilter::default_filter())
     }
 
-    /// Sets the defaults of a probe with a shape of the given kind, at the origin.
+    /// Sets the defaults of a probe with a shape of the given kind, at the origin. The caller sets the geometry.
     fn ls2d_probe_init(kind: u32, probe: Out<'_, RawProbe>) {
         let mut probe = probe;
         probe.set(RawProbe::of_kind(kind))
     }
 
-    /// The first shape that a ray meets on a translation in metres from a point. `LS2D_NONE` without a hit.
+    /// The first shape that a ray meets. The ray starts at the point (`x`, `y`) of the world and has the length and
+    /// direction of the vector (`along_x`, `along_y`), in metres. `LS2D_NONE` if there is no hit.
     fn ls2d_cast_ray(
         world: u32,
         x: RawFx,
@@ -56,7 +57,7 @@ api! {
         })
     }
 
-    /// Every shape that a ray meets, in order along the ray.
+    /// Every shape that a ray meets, in order along the ray. The ray is given as in `ls2d_cast_ray`.
     fn ls2d_cast_ray_all(
         world: u32,
         x: RawFx,
@@ -78,7 +79,8 @@ api! {
         })
     }
 
-    /// The first shape that a probe meets on a translation in metres. `LS2D_NONE` without a hit.
+    /// The first shape that a probe meets when it moves by the vector (`along_x`, `along_y`), in metres. `LS2D_NONE` if
+    /// there is no hit.
     fn ls2d_cast_shape(
         world: u32,
         probe: In<'_, RawProbe>,
@@ -138,7 +140,7 @@ api! {
         })
     }
 
-    /// The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one.
+    /// The shape nearest to a point of the world in metres. `LS2D_NONE` if no shape is within `within` metres.
     fn ls2d_closest(
         world: u32,
         x: RawFx,
@@ -156,8 +158,8 @@ api! {
         })
     }
 
-    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is disabled or not in the
-    /// world.
+    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one of the shapes is disabled or
+    /// not in the world.
     fn ls2d_shape_distance(world: u32, a: RawShape, b: RawShape, distance: Out<'_, RawFx>) {
         let mut distance = distance;
         let (a, b) = (a.id()?, b.id()?);

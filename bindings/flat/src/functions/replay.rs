@@ -45,8 +45,8 @@ pub(super) fn set_opened<T: Kind>(
 }
 
 api! {
-    /// Sets the default limits of a replay, which allow a day of play at 60 ticks per second. A file made to be slow
-    /// can take hours to verify.
+    /// Sets the default limits of a replay, which allow a day of play at 60 ticks per second. With these limits, a
+    /// malicious file can take hours to verify: a server should set narrower limits.
     fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
         let mut limits = limits;
         limits.set(RawLimits::of(&Limits::default()))
@@ -63,8 +63,8 @@ api! {
         recording.set(table::add(SandboxRecorder(Some(started)))?)
     }
 
-    /// Executes and empties a list of commands, and advances the recorded world by one tick. Refused commands are
-    /// skipped.
+    /// Executes and empties a list of commands, and advances the recorded world by one tick. Skips commands that the
+    /// world refuses.
     fn ls2d_recording_step(recording: u32, commands: u32) {
         with_two(recording, commands, |recording: &mut SandboxRecorder, Commands(list)| {
             recording.get()?.step(&[std::mem::take(list)])?;
@@ -81,7 +81,7 @@ api! {
         world.set(table::add(copy)?)
     }
 
-    /// Takes the finished bytes, to be appended to the file.
+    /// Returns the bytes finished since the last call, which the caller appends to the file.
     fn ls2d_recording_take(recording: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
@@ -99,8 +99,8 @@ api! {
         bytes.set(table::add(Bytes(rest))?)
     }
 
-    /// Verifies a replay of a world from any source. A null `limits` stands for the default limits. `ls2d_last_error`
-    /// returns the verdict in words.
+    /// Verifies a replay of a world, which may come from any source. A null `limits` stands for the default limits.
+    /// `ls2d_last_error` returns the verdict in words.
     fn ls2d_replay_verify(data: In<'_, u8>, size: usize, limits: In<'_, RawLimits>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;
         verdict.check()?;
@@ -110,7 +110,7 @@ api! {
     }
 }
 
-/// The verdict in words. For a replay of a host's game, says who can verify it.
+/// The verdict in words. For a replay of a host's game, the text adds that the program of the game has to play it.
 fn text_of(found: &Verdict) -> String {
     match found {
         Verdict::Unverifiable { why: Mismatch::Rules { file, .. } } if file.0 == HostGame::RULES.name => {

@@ -8,7 +8,7 @@ use crate::numbers::RawHash;
 use crate::table::{self, Bytes, with, with_two};
 
 api! {
-    /// Saves a world in memory.
+    /// Saves the state of a world into a new snapshot.
     fn ls2d_world_save(world: u32, snapshot: Out<'_, u32>) {
         let mut snapshot = snapshot;
         snapshot.check()?;
@@ -24,7 +24,7 @@ api! {
         })
     }
 
-    /// Restores a saved state.
+    /// Restores a world to a saved state.
     fn ls2d_world_restore(world: u32, snapshot: u32) {
         with_two(world, snapshot, |world: &mut World, snapshot: &mut Snapshot| {
             world.restore(snapshot);

@@ -41,9 +41,9 @@ fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekErro
 }
 
 api! {
-    /// Opens a replay of a world from any source, to go to any of its ticks. Tick t is the state after t ticks. A null
-    /// `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
-    /// is `LS2D_RECORD`.
+    /// Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
+    /// t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
+    /// and the result is `LS2D_RECORD`.
     fn ls2d_timeline_open(
         data: In<'_, u8>,
         size: usize,
@@ -60,7 +60,7 @@ api! {
         set_opened(opened, &mut timeline, &mut verdict)
     }
 
-    /// The current tick, and the number of ticks. Null pointers are not written.
+    /// The current tick, and the number of ticks. Each pointer may be null.
     fn ls2d_timeline_ticks(timeline: u32, tick: Out<'_, u64>, ticks: Out<'_, u64>) {
         let (mut tick, mut ticks) = (tick, ticks);
         with(timeline, |timeline: &mut SandboxTimeline| {
@@ -70,9 +70,9 @@ api! {
         })
     }
 
-    /// Goes to a tick. If the replay cannot be played up to it (a checkpoint differs, inputs are not valid, or a limit
-    /// is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to the
-    /// tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable.
+    /// Goes to a tick. If the replay cannot be played up to this tick (a checkpoint differs, inputs are not valid, or a
+    /// limit is exceeded), the result is `LS2D_RECORD`, and the timeline stays at the last tick played. Later seeks to
+    /// the tick at which playing failed, or beyond it, fail without moving. Earlier ticks remain reachable.
     fn ls2d_timeline_seek(timeline: u32, tick: u64) {
         go(timeline, |timeline| timeline.seek(tick).map(|()| Step::Ticked))
     }

@@ -94,7 +94,7 @@ api! {
         })
     }
 
-    /// Velocity in m/s of a body at a point of the world.
+    /// Velocity in m/s of a body at a point of the world in metres.
     fn ls2d_body_velocity_at(world: u32, id: RawBody, x: RawFx, y: RawFx, velocity: Out<'_, RawVec2>) {
         let mut velocity = velocity;
         with(world, |world: &mut World| {
@@ -102,7 +102,7 @@ api! {
         })
     }
 
-    /// Definition of a shape, and handle of its body. Null pointers are not written.
+    /// Definition of a shape, and handle of its body. Each pointer to a result may be null.
     fn ls2d_shape_get(world: u32, id: RawShape, def: Out<'_, RawShapeDef>, owner: Out<'_, RawBody>) {
         let (mut def, mut owner) = (def, owner);
         with(world, |world: &mut World| {
@@ -112,7 +112,7 @@ api! {
         })
     }
 
-    /// An axis-aligned box around a shape, with a margin.
+    /// The fat AABB of a shape: its axis-aligned bounding box in the world with a margin, in metres.
     fn ls2d_shape_box(world: u32, id: RawShape, area: Out<'_, RawAabb>) {
         let mut area = area;
         with(world, |world: &mut World| area.set(RawAabb::of(shape(world, id)?.fat_aabb())))
@@ -160,7 +160,7 @@ api! {
         })
     }
 
-    /// Angle of a joint in rad, including whole turns.
+    /// Angle of the joint's frame on B relative to its frame on A in rad, counter-clockwise, including whole turns.
     fn ls2d_joint_angle(world: u32, id: RawJoint, angle: Out<'_, RawFx>) {
         let mut angle = angle;
         with(world, |world: &mut World| {
@@ -169,7 +169,7 @@ api! {
         })
     }
 
-    /// Force in N of a joint on body B in the last sub-step, and torque in N m about B's anchor.
+    /// Force in N that a joint exerted on body B in the last sub-step, and torque in N m about B's anchor.
     fn ls2d_joint_force(world: u32, id: RawJoint, force: Out<'_, RawVec2>, torque: Out<'_, RawFx>) {
         let (mut force, mut torque) = (force, torque);
         with(world, |world: &mut World| {
@@ -180,8 +180,9 @@ api! {
         })
     }
 
-    /// Copies a definition, with anchors and angles for the current poses: both anchors are at a point of the world,
-    /// the axis has a direction in the world (zero: the x axis). A gear, rack or pulley gets no position error.
+    /// Copies the definition of a joint, with anchors and angles for the current poses of its bodies. Both anchors are
+    /// at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction `axis` in the
+    /// world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no position error.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

@@ -17,9 +17,10 @@ api! {
         config.set(RawConfig::of(&Config::default()))
     }
 
-    /// Adapts sub-steps and contact stiffness so that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a
-    /// box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative distance to a fiftieth of
-    /// `size`, but not below 1 mm. Set gravity and the tick rate before.
+    /// Copies the settings `from` to `config`, adapted to small boxes. The sub-steps and the contact stiffness are such
+    /// that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a box, with at most 64 sub-steps per tick
+    /// and 4000 per second. The speculative distance is reduced to a fiftieth of `size`, but not below 1 mm. Set
+    /// gravity and the tick rate before this call.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());
@@ -50,7 +51,7 @@ api! {
         })
     }
 
-    /// Advances a world by some ticks, and keeps the events of the last one.
+    /// Advances a world by a number of ticks. Afterwards, the event functions return the events of the last tick.
     fn ls2d_world_steps(world: u32, ticks: u32) {
         with(world, |world: &mut World| {
             (0..ticks).for_each(|_| world.step());
@@ -58,14 +59,15 @@ api! {
         })
     }
 
-    /// Hash of the state. Equal settings, edits and ticks in the same order give equal hashes on every machine.
+    /// Hash of the state of a world. Equal settings, edits and ticks in the same order give equal hashes on every
+    /// machine.
     fn ls2d_world_hash(world: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))
     }
 
-    /// Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
-    /// 5 islands, 6 random numbers.
+    /// Hash of one section of the state. `section` is 0 (settings, tick and fault count), 1 (bodies), 2 (shapes), 3
+    /// (joints), 4 (contacts), 5 (islands), or 6 (random number generator).
     fn ls2d_world_digest(world: u32, section: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         let sections = [
@@ -91,8 +93,8 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of clamped results of the solver since the world was made, plus one for every tick in which `pair_limit`
-    /// left pairs out. A body at the speed limit does not count.
+    /// Number of results that the solver has clamped to their range since the world was made, plus one for every tick
+    /// with more pairs than `pair_limit`. Limiting a body to the largest speed does not count.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))
@@ -104,7 +106,8 @@ api! {
         with(world, |world: &mut World| config.set(RawConfig::of(world.config())))
     }
 
-    /// Numbers of bodies, shapes, joints, awake bodies, and pairs of near shapes. Null pointers are not written.
+    /// Numbers of bodies, shapes, joints, awake bodies, and pairs of shapes with overlapping fat AABBs. Each pointer
+    /// may be null.
     fn ls2d_world_counts(
         world: u32,
         bodies: Out<'_, usize>,
@@ -148,7 +151,7 @@ api! {
         with(world, |world: &mut World| number.set(RawFx::of(world.rng().range(low, high))))
     }
 
-    /// Drops the caches of a world, which does not change its hash.
+    /// Rebuilds the caches of a world. Its hash does not change. There are no events until the next tick.
     fn ls2d_world_clear_scratch(world: u32) {
         with(world, |world: &mut World| {
             world.clear_scratch();

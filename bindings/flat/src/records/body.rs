@@ -32,13 +32,13 @@ constants! {
     BODY_MAY_SLEEP = 32, "LS2D_BODY_MAY_SLEEP";
     /// Flag of a body: its mass is given instead of computed from its shapes.
     BODY_GIVEN_MASS = 64, "LS2D_BODY_GIVEN_MASS";
-    /// `ls2d_body_def.continuous`: swept against nothing.
+    /// `ls2d_body_def.continuous`: no continuous collision detection.
     SWEEP_OFF = 0, "LS2D_SWEEP_OFF";
-    /// `ls2d_body_def.continuous`: swept against fixed bodies.
+    /// `ls2d_body_def.continuous`: the body is swept against fixed bodies.
     SWEEP_FIXED = 1, "LS2D_SWEEP_FIXED";
-    /// `ls2d_body_def.continuous`: swept against all bodies that are not bullets.
+    /// `ls2d_body_def.continuous`: the body is swept against all bodies except bullets.
     SWEEP_BULLET = 2, "LS2D_SWEEP_BULLET";
-    /// `ls2d_body_def.continuous`: swept against fixed and kinematic bodies.
+    /// `ls2d_body_def.continuous`: the body is swept against fixed and kinematic bodies.
     SWEEP_KINEMATIC = 3, "LS2D_SWEEP_KINEMATIC";
 }
 
@@ -71,11 +71,11 @@ records! {
         velocity: RawVec2,
         /// Angular velocity in rad/s, counter-clockwise.
         angular_velocity: RawFx,
-        /// Mass in kg, with `LS2D_BODY_GIVEN_MASS`.
+        /// Mass in kg. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass: RawFx,
-        /// Centre of mass in the body's frame in metres, with `LS2D_BODY_GIVEN_MASS`.
+        /// Centre of mass in the body's frame, in metres. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass_centre: RawVec2,
-        /// Radius of gyration in metres, with `LS2D_BODY_GIVEN_MASS`.
+        /// Radius of gyration in metres. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass_gyration: RawFx,
         /// Decay rate of the velocity, per second.
         linear_damping: RawFx,
@@ -85,9 +85,9 @@ records! {
         gravity_scale: RawFx,
         /// Speed in m/s below which the body becomes ready to sleep.
         sleep_speed: RawFx,
-        /// A number for the game.
+        /// A number that the game may choose freely.
         user_data: u64,
-        /// Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros; empty for none.
+        /// Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros. All zeros for no name.
         name: [u8; 16],
     }
 
@@ -105,7 +105,7 @@ records! {
         shapes: u32,
         /// Velocity of the centre of mass in m/s.
         velocity: RawVec2,
-        /// Angular velocity in rad/s.
+        /// Angular velocity in rad/s, counter-clockwise.
         angular_velocity: RawFx,
         /// Centre of mass in the world, in metres.
         centre: RawVec2,
@@ -113,17 +113,17 @@ records! {
         mass: RawFx,
         /// Moment of inertia about the centre of mass in kg m².
         inertia: RawFx,
-        /// The number that the game stores with the body.
+        /// The number that the game has stored with the body.
         user_data: u64,
         /// Decay rate of the velocity, per second.
         linear_damping: RawFx,
         /// Decay rate of the angular velocity, per second.
         angular_damping: RawFx,
-        /// Factor on gravity.
+        /// Factor on the world's gravity.
         gravity_scale: RawFx,
         /// Speed in m/s below which the body becomes ready to sleep.
         sleep_speed: RawFx,
-        /// An `LS2D_SWEEP_` constant.
+        /// `LS2D_SWEEP_OFF` and so on.
         continuous: u32,
         /// Reserved: 0.
         reserved: u32,

@@ -13,9 +13,10 @@ use crate::status::Outcome;
 constants! {
     /// `ls2d_mover_state.flags`: the character stands on ground.
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
-    /// `ls2d_mover_state.flags`, in results: wedged between two slopes that are too steep to stand on.
+    /// `ls2d_mover_state.flags`, in results: the character is wedged between two slopes that are too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
-    /// `ls2d_mover_state.flags`: inside a shape that is solid from one side, passing on until it is out of it.
+    /// `ls2d_mover_state.flags`: the character is inside a shape that is solid from one side only, and passes through
+    /// until it has left the shape.
     MOVER_PASSING = 4, "LS2D_MOVER_PASSING";
 }
 
@@ -28,7 +29,7 @@ records! {
         slope_max: RawAngle,
         /// Height in metres of steps that the character climbs without a jump.
         step_height: RawFx,
-        /// Distance in metres by which ground may descend within a tick while the character follows it.
+        /// Largest descent of the ground within a tick, in metres, that the character follows.
         snap_distance: RawFx,
         /// Geometry of the character; other fields of the definition have no effect.
         shape: RawShapeDef,
@@ -40,7 +41,7 @@ records! {
         shape: RawShape,
         /// Body of that shape.
         body: RawBody,
-        /// Position of the body's origin at that time, in metres.
+        /// Position of the body's origin when the character met the surface, in the world, in metres.
         body_position: RawVec2,
         /// Velocity of the surface in m/s.
         velocity: RawVec2,
@@ -50,13 +51,13 @@ records! {
         point: RawVec2,
         /// Distance of the character from the surface in metres, negative if they overlap.
         separation: RawFx,
-        /// Rotation of the body at that time.
+        /// Rotation of the body when the character met the surface.
         body_angle: RawAngle,
         /// Reserved: 0.
         reserved: u32,
     }
 
-    /// State of a character, to be kept by the game. `ls2d_mover_state_init` sets the first state.
+    /// State of a character, which the game stores. `ls2d_mover_state_init` sets the first state.
     struct RawMoverState = "ls2d_mover_state" {
         /// Size of this struct in bytes.
         size: u32,
@@ -66,7 +67,7 @@ records! {
         position: RawVec2,
         /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world.
         velocity: RawVec2,
-        /// The ground, with `LS2D_MOVER_ON_GROUND`; otherwise zeros.
+        /// With `LS2D_MOVER_ON_GROUND`, the ground on which the character stands; otherwise zeros.
         ground: RawMoverPlane,
     }
 }

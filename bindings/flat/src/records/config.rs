@@ -28,9 +28,9 @@ records! {
         tick_rate: u32,
         /// Gravity in m/s².
         gravity: RawVec2,
-        /// Sub-steps of a tick.
+        /// Number of sub-steps of a tick.
         sub_steps: u32,
-        /// Iterations of a sub-step.
+        /// Number of solver iterations of a sub-step.
         iterations: u32,
         /// `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`.
         contact: u32,
@@ -50,7 +50,8 @@ records! {
         restitution_threshold: RawFx,
         /// Largest speed of a body in m/s.
         speed_max: RawFx,
-        /// Distance in metres within which shapes get contact points. It is larger for shapes that approach each other.
+        /// Distance in metres within which shapes get contact points before they touch. The distance is larger for
+        /// shapes that approach each other.
         speculative_distance: RawFx,
         /// Largest margin in metres of the bounding boxes in the broad phase.
         fat_margin: RawFx,
@@ -62,7 +63,7 @@ records! {
         shape_limit: u32,
         /// Largest number of joints.
         joint_limit: u32,
-        /// Largest number of pairs of near shapes.
+        /// Largest number of pairs of shapes with overlapping fat AABBs in a tick. Further pairs are left out.
         pair_limit: u32,
     }
 }

@@ -36,7 +36,7 @@ records! {
         sensor: RawShape,
         /// The shape that overlaps the sensor.
         visitor: RawShape,
-        /// Time within the tick at which the overlap began or ceased, 0 to 1.
+        /// Time at which the overlap began or ceased, as a fraction of the tick from 0 to 1.
         fraction: RawFx,
     }
 
@@ -46,7 +46,7 @@ records! {
         joint: RawJoint,
         /// Force on body B in N.
         force: RawVec2,
-        /// Torque in N m on body B about its anchor.
+        /// Torque in N m on body B about B's anchor.
         torque: RawFx,
         /// 1 if the joint broke, otherwise 0.
         broke: u64,

@@ -11,21 +11,21 @@ use crate::status::{Outcome, value};
 constants! {
     /// Kind of a joint: a hinge.
     REVOLUTE = 0, "LS2D_REVOLUTE";
-    /// Kind of a joint: B slides along the x axis of A's frame and does not turn.
+    /// Kind of a joint: B slides along the x axis of the joint's frame on A, and does not turn.
     PRISMATIC = 1, "LS2D_PRISMATIC";
     /// Kind of a joint: a rod, a rope or a spring between the anchors.
     DISTANCE = 2, "LS2D_DISTANCE";
     /// Kind of a joint: B keeps its pose relative to A, rigidly or by springs.
     WELD = 3, "LS2D_WELD";
-    /// Kind of a joint: B slides along the x axis of A's frame and turns.
+    /// Kind of a joint: B slides along the x axis of the joint's frame on A, and turns.
     WHEEL = 4, "LS2D_WHEEL";
     /// Kind of a joint: B is driven relative to A with limited force.
     MOTOR = 5, "LS2D_MOTOR";
-    /// Kind of a joint: the bodies do not collide with each other.
+    /// Kind of a joint: only keeps the bodies from colliding with each other.
     FILTER = 6, "LS2D_FILTER";
     /// Kind of a joint: the wheels about the anchors turn in a fixed ratio, as gears.
     GEAR = 7, "LS2D_GEAR";
-    /// Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame.
+    /// Kind of a joint: the wheel about A's anchor rolls along the x axis of the joint's frame on B.
     RACK = 8, "LS2D_RACK";
     /// Kind of a joint: a rope over two wheels that are fixed in the world.
     PULLEY = 9, "LS2D_PULLEY";
@@ -35,7 +35,7 @@ constants! {
     JOINT_ENABLED = 2, "LS2D_JOINT_ENABLED";
     /// Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel).
     JOINT_LIMIT = 4, "LS2D_JOINT_LIMIT";
-    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; motor, for the angle).
+    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; for the angle: motor).
     JOINT_MOTOR = 8, "LS2D_JOINT_MOTOR";
     /// Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
     /// wheel).
@@ -61,8 +61,8 @@ constants! {
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the text of a flag names is read
-    /// only with that flag, except that a pulley always reads `length`.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. If the comment of a flag names a field, the
+    /// field is read only with this flag. There is one exception: a pulley always reads `length`.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,
@@ -74,9 +74,9 @@ records! {
         teeth_a: i32,
         /// Teeth of B's wheel of a gear.
         teeth_b: i32,
-        /// Angle of the joint's frame in A's frame.
+        /// Angle of the joint's frame on A, in the frame of body A.
         angle_a: RawAngle,
-        /// Angle of the joint's frame in B's frame.
+        /// Angle of the joint's frame on B, in the frame of body B.
         angle_b: RawAngle,
         /// Reserved: 0.
         reserved: u32,
@@ -84,23 +84,23 @@ records! {
         body_a: RawBody,
         /// Body B.
         body_b: RawBody,
-        /// Anchor in A's frame in metres.
+        /// Anchor in the frame of body A, in metres.
         anchor_a: RawVec2,
-        /// Anchor in B's frame in metres.
+        /// Anchor in the frame of body B, in metres.
         anchor_b: RawVec2,
-        /// Lower end of the range, in rad or m.
+        /// Lower limit: of the angle in rad (revolute), or of the translation or length in m.
         limit_lower: RawFx,
-        /// Upper end of the range, in rad or m.
+        /// Upper limit, in the unit of the lower one.
         limit_upper: RawFx,
-        /// Target speed in rad/s or m/s.
+        /// Target speed of the motor: in rad/s (revolute, wheel, motor), or m/s (prismatic, distance).
         motor_speed: RawFx,
-        /// Largest torque in N m or force in N.
+        /// Largest torque of the motor in N m, or largest force in N.
         motor_max: RawFx,
         /// Frequency of the spring in Hz.
         spring_hertz: RawFx,
         /// Damping ratio of the spring.
         spring_damping_ratio: RawFx,
-        /// Rest position of the spring, in rad or m.
+        /// Rest position of the spring: in rad (revolute), or m.
         spring_target: RawFx,
         /// Smallest force of the spring in N.
         spring_force_lower: RawFx,
@@ -116,9 +116,9 @@ records! {
         threshold_force: RawFx,
         /// Torque in N m beyond which the joint is reported or breaks.
         threshold_torque: RawFx,
-        /// Target velocity of a motor joint in m/s.
+        /// Target velocity of B's anchor relative to A along the axes of the world, in m/s (motor joint).
         linear_velocity: RawVec2,
-        /// Largest driving force of a motor joint in N.
+        /// Largest force in N for `linear_velocity` (motor joint).
         linear_motor_max: RawFx,
         /// Frequency in Hz of the spring between the anchors.
         linear_hertz: RawFx,
@@ -140,7 +140,7 @@ records! {
         wheel_b: RawVec2,
         /// Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`.
         ratio: RawFx,
-        /// A number for the game.
+        /// A number that the game may choose freely.
         user_data: u64,
     }
 }

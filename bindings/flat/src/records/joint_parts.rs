@@ -11,14 +11,14 @@ use super::{check_flags, flag, has};
 use crate::numbers::{RawFx, RawVec2};
 use crate::status::{Outcome, value};
 
-/// Flags of all kinds of joints.
+/// Flags that all kinds of joints allow.
 const COMMON: u32 = JOINT_COLLIDE
     | JOINT_ENABLED
     | JOINT_SOFTNESS
     | JOINT_THRESHOLD_FORCE
     | JOINT_THRESHOLD_TORQUE
     | JOINT_BREAKS;
-/// Flags of revolute, prismatic, distance and wheel joints.
+/// Further flags that revolute, prismatic, distance and wheel joints allow.
 const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
 
 /// Options of revolute, prismatic, wheel and distance joints.
@@ -146,7 +146,7 @@ impl RawJointDef {
         [self.if_has(JOINT_LINEAR_SPRING, linear), self.if_has(JOINT_ANGULAR_SPRING, angular)]
     }
 
-    /// Flags that the kind allows.
+    /// Flags that the kind of this joint allows.
     fn allowed(&self) -> Outcome<u32> {
         Ok(COMMON
             | match self.kind {

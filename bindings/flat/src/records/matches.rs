@@ -21,9 +21,9 @@ constants! {
     MALFORMED = 4, "LS2D_MALFORMED";
     /// Verdict: the file exceeds one of the limits.
     LIMIT_EXCEEDED = 5, "LS2D_LIMIT_EXCEEDED";
-    /// Verdict: recorded with another version of the engine, or other rules.
+    /// Verdict: the file was recorded with another version of the engine, or with other rules.
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
-    /// Request: keep a copy of the state before `tick`. It replaces an older one for the same tick.
+    /// Request: keep a copy of the state before `tick`. The copy replaces an older copy for the same tick.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
     /// Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
@@ -43,7 +43,8 @@ constants! {
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
     /// Event: `peer` loses `seat` at `tick`.
     EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
-    /// Event: play stalls for inputs of `peer`. `value` is 1 if that peer is heard, directly or through others.
+    /// Event: play stalls, because inputs of `peer` are missing. `value` is 1 if messages of this peer still arrive,
+    /// directly or through other peers; otherwise 0.
     EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
     /// Event: play continues.
     EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
@@ -51,26 +52,27 @@ constants! {
     EVENT_PAUSE = 6, "LS2D_EVENT_PAUSE";
     /// Event: the match ends after `tick` ticks.
     EVENT_END = 7, "LS2D_EVENT_END";
-    /// Event: after `tick` ticks, `peer` has a different state, with the hashes `ours` and `theirs`.
+    /// Event: after `tick` ticks, the state of `peer` has the hash `theirs`, and the state of this peer the hash
+    /// `ours`.
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
     /// Event: `peer` has issued two different inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the other peers may have dropped inputs that this peer lacks. This peer has to join again.
+    /// Event: this peer is so far behind that the others may have dropped inputs that it lacks. It has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
     /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
-    /// Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
-    /// Restore that state before the next request.
+    /// Event: the state after `tick` ticks was downloaded. `value` is the handle of its bytes, which the caller frees.
+    /// Restore this state before you fulfil the next request.
     EVENT_STATE = 12, "LS2D_EVENT_STATE";
-    /// Event: the downloaded bytes are not a valid state; they are requested again.
+    /// Event: the downloaded bytes are not a valid state. This peer requests the state again.
     EVENT_BAD_STATE = 13, "LS2D_EVENT_BAD_STATE";
     /// Reason: the offers differ.
     REFUSED_OFFER = 0, "LS2D_REFUSED_OFFER";
     /// Reason: too many peers are joining through this contact.
     REFUSED_FULL = 1, "LS2D_REFUSED_FULL";
-    /// Reason: another peer has the number of this peer.
+    /// Reason: another peer already has the `peer` number of this peer.
     REFUSED_TAKEN = 2, "LS2D_REFUSED_TAKEN";
-    /// Reason: the contact is not in a match yet. The request is repeated.
+    /// Reason: the contact is not in a match yet. This peer repeats its request.
     REFUSED_NOT_READY = 3, "LS2D_REFUSED_NOT_READY";
     /// Status: follows the match and requests a seat.
     MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
@@ -80,7 +82,7 @@ constants! {
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
-    /// Status: hears no majority of the peers, directly or through others.
+    /// Status: no messages of a majority of the peers arrive, directly or through other peers.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
     /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
@@ -111,7 +113,7 @@ records! {
         setup_bytes: u32,
         /// Largest number of players.
         players: u32,
-        /// Largest number of bytes of a block.
+        /// Largest number of bytes of a block, which has the inputs between two checkpoints.
         block_bytes: u32,
         /// Largest number of ticks between checkpoints.
         block_ticks: u32,
@@ -119,7 +121,7 @@ records! {
         ticks: u64,
         /// Largest number of bodies of the world.
         bodies: u64,
-        /// Largest number of work units of a tick.
+        /// Largest number of work units of a tick. A unit takes about a microsecond or less.
         tick_work: u64,
         /// Largest number of work units of the game.
         total_work: u64,
@@ -146,7 +148,7 @@ records! {
         seats: u32,
         /// Number of seats that this peer plays; 0 for a spectator or a dedicated server.
         own_seats: u32,
-        /// Number of seats that have to be taken before the first tick. That of the host counts.
+        /// Number of seats that have to be taken before the first tick. Seats of the host count.
         start_with: u32,
         /// Bytes of an input, 1 to 512.
         input_bytes: u32,
@@ -162,23 +164,24 @@ records! {
         save_interval: u32,
         /// Interval in ticks at which states are compared: a multiple of `save_interval`.
         check_interval: u32,
-        /// Number of ticks that may be played beyond the last final one.
+        /// Number of ticks that may be played beyond the last final tick.
         history: u32,
         /// Minimum number of final ticks whose inputs are kept.
         log_ticks: u32,
-        /// Number of ticks from the agreement that a peer joins to its first tick, in addition to three round trips.
+        /// Number of ticks between the agreement that a peer joins and its first tick, in addition to three round
+        /// trips.
         seat_lead: u32,
-        /// A peer that lags by at most this many ticks may have a seat.
+        /// A peer may get a seat if it lags by at most this many ticks.
         seat_within: u32,
         /// Random number of this peer, new for each process.
         peer: u32,
         /// Tag of the match: packets with another tag are ignored.
         match_tag: u64,
-        /// Time in microseconds for which play stalls for a missing peer before the others go on.
+        /// Time in microseconds for which the other peers wait for a missing peer before they go on without it.
         patience: u64,
-        /// Identity of the player: a peer that joins with the same key gets its seat back, if that is free.
+        /// Identity of the player: a peer that joins with the same key gets its seat back, if the seat is free.
         key: u64,
-        /// Secret random numbers, against packets with forged addresses.
+        /// Secret random numbers that protect against packets with forged addresses.
         secret: [u64; 2],
     }
 

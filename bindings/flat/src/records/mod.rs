@@ -1,7 +1,7 @@
 //! Structs that callers fill or receive, and their conversions.
 //!
-//! Structs that callers fill begin with their size. The size detects programs that were compiled with another version
-//! of the header.
+//! Structs with an `_init` function, except `RawRng`, begin with their size. The size detects programs that were
+//! compiled with another version of the header.
 
 mod body;
 mod character;

@@ -14,16 +14,17 @@ use crate::status::{Outcome, value};
 constants! {
     /// `ls2d_query_filter.flags`: the query sees sensors.
     QUERY_SENSORS = 1, "LS2D_QUERY_SENSORS";
-    /// Rays report shapes that they start in. Casts report those into which they would move deeper.
+    /// `ls2d_query_filter.initial_overlap`: a ray reports shapes that it starts in. A cast reports such a shape only if
+    /// it would move deeper into the shape.
     OVERLAP_RESIST = 0, "LS2D_OVERLAP_RESIST";
-    /// Rays and casts report shapes that they start in.
+    /// `ls2d_query_filter.initial_overlap`: rays and casts report shapes that they start in.
     OVERLAP_REPORT = 1, "LS2D_OVERLAP_REPORT";
-    /// Rays and casts do not see shapes that they start in.
+    /// `ls2d_query_filter.initial_overlap`: rays and casts do not see shapes that they start in.
     OVERLAP_IGNORE = 2, "LS2D_OVERLAP_IGNORE";
 }
 
 records! {
-    /// Selects the shapes that a query sees. Null stands for the defaults of `ls2d_query_filter_init`.
+    /// Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`.
     struct RawQueryFilter = "ls2d_query_filter" {
         /// Size of this struct in bytes.
         size: u32,
@@ -31,7 +32,7 @@ records! {
         flags: u32,
         /// `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in.
         initial_overlap: u32,
-        /// Number of bodies that the query does not see, at most 8.
+        /// Number of bodies in `except`, at most 8.
         except_count: u32,
         /// Categories that the query belongs to.
         category: u64,
@@ -47,7 +48,7 @@ records! {
         shape: RawShape,
         /// Body of that shape.
         body: RawBody,
-        /// Fraction of the translation, 0 to 1.
+        /// Fraction of the translation at the hit, 0 to 1.
         fraction: RawFx,
         /// Point in the world, in metres.
         point: RawVec2,
@@ -57,17 +58,17 @@ records! {
         starts_inside: u64,
     }
 
-    /// Hit of a moving shape.
+    /// Hit of a moving probe.
     struct RawCastHit = "ls2d_cast_hit" {
-        /// The shape that is met.
+        /// The shape that the probe meets.
         shape: RawShape,
         /// Body of that shape.
         body: RawBody,
-        /// Fraction of the translation, 0 to 1.
+        /// Fraction of the translation at the hit, 0 to 1.
         fraction: RawFx,
-        /// Displacement up to the hit, in metres.
+        /// Displacement of the probe up to the hit, in metres.
         travelled: RawVec2,
-        /// Point on the surface that is met, in the world, in metres.
+        /// Point on the surface of that shape, in the world, in metres.
         point: RawVec2,
         /// Outward normal of the surface at that point.
         normal: RawVec2,
@@ -81,7 +82,7 @@ records! {
         shape: RawShape,
         /// Body of that shape.
         body: RawBody,
-        /// Distance in metres; negative inside.
+        /// Distance in metres, negative if the given point is inside the shape.
         distance: RawFx,
         /// Point on the surface, in the world, in metres.
         point: RawVec2,

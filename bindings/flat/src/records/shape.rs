@@ -19,8 +19,8 @@ constants! {
     POLYGON = 2, "LS2D_POLYGON";
     /// Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`.
     CAPSULE = 3, "LS2D_CAPSULE";
-    /// Kind of a shape: a link of a chain from `points[0]` to `points[1]`, made by `ls2d_chain_links`. The far ends of
-    /// its neighbours are `points[2]` and `points[3]`.
+    /// Kind of a shape: a link of a chain, made by `ls2d_chain_links`. It is a line from `points[0]` to `points[1]`.
+    /// The far ends of the links before and after it are `points[2]` and `points[3]`.
     LINK = 4, "LS2D_LINK";
     /// Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`.
     HULL = 5, "LS2D_HULL";
@@ -28,7 +28,7 @@ constants! {
     RECTANGLE = 6, "LS2D_RECTANGLE";
     /// Flag of a shape: detects overlaps, and does not collide.
     SHAPE_SENSOR = 1, "LS2D_SHAPE_SENSOR";
-    /// Flag of a shape: other shapes pass in the direction `one_way`.
+    /// Flag of a shape: other shapes pass through it in the direction `one_way`.
     SHAPE_ONE_WAY = 2, "LS2D_SHAPE_ONE_WAY";
     /// Flag of a shape: has its own `restitution_threshold`.
     SHAPE_RESTITUTION_THRESHOLD = 4, "LS2D_SHAPE_RESTITUTION_THRESHOLD";
@@ -36,9 +36,9 @@ constants! {
     SHAPE_AREA = 8, "LS2D_SHAPE_AREA";
     /// Flag of a shape: the area attracts bodies to its centre.
     SHAPE_ATTRACTION = 16, "LS2D_SHAPE_ATTRACTION";
-    /// Flag of a shape: reports contacts.
+    /// Flag of a shape: contact events include this shape.
     SHAPE_CONTACT_EVENTS = 32, "LS2D_SHAPE_CONTACT_EVENTS";
-    /// Flag of a shape: reports hits.
+    /// Flag of a shape: hit events include this shape.
     SHAPE_HIT_EVENTS = 64, "LS2D_SHAPE_HIT_EVENTS";
     /// Flag of a shape: sensors detect it.
     SHAPE_SENSOR_EVENTS = 128, "LS2D_SHAPE_SENSOR_EVENTS";
@@ -50,7 +50,8 @@ constants! {
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
     /// Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing: the mean. If two shapes have different rules, the one with the larger number applies.
+    /// Rule of mixing, for the values of two shapes: the mean. If the shapes have different rules, the rule with the
+    /// larger number applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
     /// Rule of mixing: the square root of the product.
     MIX_GEOMETRIC_MEAN = 1, "LS2D_MIX_GEOMETRIC_MEAN";
@@ -62,9 +63,9 @@ constants! {
     MIX_MAXIMUM = 4, "LS2D_MIX_MAXIMUM";
     /// Attraction that is constant beyond `attraction_radius`.
     FALLOFF_CONSTANT = 0, "LS2D_FALLOFF_CONSTANT";
-    /// Attraction that decreases with the distance beyond `attraction_radius`.
+    /// Attraction that is in inverse proportion to the distance beyond `attraction_radius`.
     FALLOFF_INVERSE = 1, "LS2D_FALLOFF_INVERSE";
-    /// Attraction that decreases with the square of the distance beyond `attraction_radius`.
+    /// Attraction that is in inverse proportion to the square of the distance beyond `attraction_radius`.
     FALLOFF_INVERSE_SQUARE = 2, "LS2D_FALLOFF_INVERSE_SQUARE";
 }
 
@@ -95,7 +96,8 @@ records! {
         friction: RawFx,
         /// Fraction of the approach speed that a bounce returns.
         restitution: RawFx,
-        /// Approach speed in m/s below which the shape does not bounce, with `LS2D_SHAPE_RESTITUTION_THRESHOLD`.
+        /// Approach speed in m/s below which the shape does not bounce. Read only with
+        /// `LS2D_SHAPE_RESTITUTION_THRESHOLD`.
         restitution_threshold: RawFx,
         /// Rolling resistance of a round shape, as a fraction of its radius.
         rolling_resistance: RawFx,
@@ -105,24 +107,24 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Two shapes with an equal group always collide if the group is positive, never if it is negative. 0 is no
-        /// group.
+        /// Two shapes with the same positive group always collide, two shapes with the same negative group never. 0 is
+        /// no group.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
         /// `LS2D_MIX_AVERAGE` and so on, for restitution.
         restitution_mixing: u32,
-        /// Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`.
+        /// Direction in the body's frame in which other shapes pass through. Read only with `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
-        /// Acceleration in m/s² of bodies in the area, along the axes of the area's body.
+        /// Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body.
         area_acceleration: RawVec2,
-        /// Force in N per m² of the covered part of a body, along the axes of the area's body.
+        /// Force in N per m² of the part of a body that is in the area, along the axes of the area's body.
         area_force: RawVec2,
-        /// Velocity of the medium in m/s in the frame of the area's body.
+        /// Velocity of the medium relative to the area's body in m/s, along the axes of this body.
         area_flow: RawVec2,
-        /// Rate per second at which velocities approach that of the medium.
+        /// Rate per second at which the velocity of a body in the area approaches the velocity of the medium.
         area_linear_drag: RawFx,
-        /// Rate per second at which angular velocities approach that of the medium.
+        /// Rate per second at which the angular velocity of a body in the area approaches that of the area's body.
         area_angular_drag: RawFx,
         /// Density of the medium in kg/m², for buoyancy.
         area_density: RawFx,
@@ -134,7 +136,7 @@ records! {
         attraction_falloff: u32,
         /// Reserved: 0.
         reserved: u32,
-        /// A number for the game.
+        /// A number that the game may choose freely.
         user_data: u64,
     }
 }

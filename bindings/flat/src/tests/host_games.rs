@@ -31,7 +31,7 @@ impl Sums {
     }
 }
 
-/// Inputs of a tick, and a bit for each absent player. Both change every eight ticks.
+/// Inputs of a tick, and a bit for each absent player. The inputs and the bits change every eight ticks.
 fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     let mut rng = Rng::new(tick / 8);
     let absent = u64::from(rng.next_u32() % 8) & u64::from(rng.next_u32());
@@ -44,7 +44,7 @@ fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     (inputs, absent)
 }
 
-/// A recording with two claims, and the state after each tick.
+/// Records a game with two claims. Returns the file, and the state before the first tick and after each tick.
 fn record(interval: u32) -> (Vec<u8>, Vec<Sums>) {
     let mut game = Sums::default();
     let (mut recorder, mut bytes) = (0, 0);
@@ -151,7 +151,7 @@ impl Player {
         Player { replay: open(file), game: Sums::default(), saves: BTreeMap::new(), played: 0 }
     }
 
-    /// Fulfils all requests, and returns the last status.
+    /// Seeks to a tick: fulfils all requests, and returns the last status.
     fn seek(&mut self, tick: u64) -> i32 {
         done(ls2d_replay_seek(self.replay, tick));
         let mut request = RawRequest { kind: 99, tick: 0, absent: 0, guessed: 0 };

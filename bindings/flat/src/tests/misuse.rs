@@ -48,7 +48,7 @@ fn the_last_error_says_why() {
     assert_eq!(Failure::none().status, Status::None);
 }
 
-/// A pointer that is not aligned, to memory for one item.
+/// A misaligned pointer to memory for one item.
 fn odd<T: border::Plain>(memory: &mut [u64; 2]) -> Out<'_, T> {
     Out::to(memory.as_mut_ptr().cast::<u8>().wrapping_add(1).cast())
 }

@@ -1,4 +1,4 @@
-//! Tests with internal conversions.
+//! Tests that use conversions that the crate does not export.
 #![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
 #[cfg(feature = "lockstep")]
@@ -21,7 +21,7 @@ fn hash_of(world: u32) -> StateHash {
     hash.hash()
 }
 
-/// Copies the bytes and frees the object.
+/// Copies the contents of a bytes object, and frees the object.
 fn take(bytes: u32) -> Vec<u8> {
     let mut size = 0;
     done(crate::ls2d_bytes_size(bytes, Out::of(&mut size)));

@@ -1,4 +1,4 @@
-//! Random calls do not fail in the library itself, and a repeated sequence gives equal codes and worlds.
+//! Random calls cause no internal error, and repeating a sequence of calls gives equal codes and worlds.
 
 use lockstep2d::math::Rng;
 

@@ -17,7 +17,8 @@ fn game(scene: &Scene) -> Sandbox {
     Sandbox::new(&scene.setup(SEED)).unwrap()
 }
 
-/// Executes a command: common kinds through structs, others as encoded bytes.
+/// Executes a command. Common commands go through their own function, other commands through a list that is decoded
+/// from bytes.
 fn edit(target: u32, command: &Command) {
     let id = Out::null;
     match command {
@@ -229,7 +230,7 @@ fn a_character_moves_as_in_rust() {
     done(ls2d_free(world));
 }
 
-/// A short buffer or a wrong body adds nothing.
+/// A call with a short buffer or a wrong body adds nothing.
 #[test]
 fn bodies_and_joints_are_added_together_or_not_at_all() {
     let mut world = 0;

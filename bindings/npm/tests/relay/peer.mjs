@@ -2,8 +2,8 @@
 //
 //     node peer.mjs URL CODE KEY [--pause-at TICK] [--quit-at TICK] [-o FILE]
 //
-// Prints a line of JSON when it starts to play, and one at the end. `--pause-at` stops for five seconds; `--quit-at`
-// ends the process without leaving the match.
+// Prints a line of JSON when it starts to play, and another one at the end. `--pause-at` stops the updates for five
+// seconds. `--quit-at` ends the process without leaving the match.
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { register } from "node:module";
@@ -42,7 +42,7 @@ while (match.status !== "closed") {
         counts[event.kind] = (counts[event.kind] ?? 0) + 1;
         if (event.kind === "status") {
             statuses.push(event.status);
-            // The first status may be another one, such as `waiting`, on a machine with much to do.
+            // On a slow machine, the first status may be another one, such as `waiting`.
             if (statuses.indexOf("playing") === statuses.length - 1) {
                 console.log(JSON.stringify({ playing: driver.tick }));
             }

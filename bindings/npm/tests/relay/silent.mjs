@@ -1,6 +1,6 @@
-// A member alone in a room, which no frame reaches but the answers of the relay: node silent.mjs URL
+// A member that is alone in a room, so that only the relay sends it frames: node silent.mjs URL
 //
-// It keeps its connection for longer than the 15 seconds after which a silent one is opened again.
+// The member keeps its connection for more than 15 seconds, after which it would replace a connection without answers.
 import assert from "node:assert/strict";
 import { Relay } from "../../src/index.js";
 

@@ -1,6 +1,6 @@
 //! [`Engine`]: the interface to the engines that are measured.
 
-/// Number of saves that are kept.
+/// Number of saves that an engine keeps.
 pub const DEPTH: usize = 9;
 
 /// An engine that keeps saves of its last ticks.
@@ -11,7 +11,7 @@ pub trait Engine {
     /// Saves the state after the tick. If there are then more than [`DEPTH`] saves, drops the oldest one.
     fn save(&mut self);
 
-    /// Returns to the oldest save, and drops the later saves.
+    /// Loads the oldest save, and drops the later saves.
     fn load(&mut self);
 
     /// State to compare after a rollback: bits of positions, rotations and velocities, or a hash.

@@ -62,8 +62,8 @@ impl Measured {
         Measured { name, engine, bytes: 0, saves, loads, rollbacks, equal: 0 }
     }
 
-    /// Plays until the pile rests, then counts the bytes of a save. They include data that a tick has to copy because a
-    /// save shares it.
+    /// Plays until the pile rests, then counts the bytes of a save. The bytes include data that a tick has to copy
+    /// because a save shares it.
     fn settle(&mut self) {
         (0..SETTLING).for_each(|_| self.engine.step());
         let region = Region::new(ALLOCATOR);

@@ -48,7 +48,7 @@ impl<G: LockstepGame> Driver<G> {
             Driver::SyncTest(test) if !is_paused => test.run(time.delta, inputs),
             Driver::Replay(replay) if !is_paused => replay.run(time.delta),
             Driver::Local(_) | Driver::SyncTest(_) | Driver::Replay(_) => Ok(()),
-            // During a pause, packets still arrive.
+            // A paused match still has to receive packets.
             Driver::Match(network) => network.run(time, is_paused, inputs),
         }
     }
@@ -71,7 +71,7 @@ impl<G: LockstepGame> Driver<G> {
         }
     }
 
-    /// Confirmed ticks, which no rollback can change.
+    /// Number of confirmed ticks, which no rollback can change.
     pub(crate) fn confirmed(&self) -> u64 {
         match self {
             Driver::Local(local) => local.tick(),

@@ -43,7 +43,7 @@ const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {
     peer: Peer<Observed<G>, AnyTransport>,
-    /// Estimated time since the last tick, in ticks. An estimate, because the session lengthens and shortens its ticks.
+    /// Time since the last tick, in ticks. It is estimated, because the session lengthens and shortens its ticks.
     phase: f32,
 }
 
@@ -60,7 +60,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     ) -> Result<(), LockstepError> {
         let first = self.peer.tick();
         self.peer.update(time.real_elapsed)?;
-        // A session that began after the call of `Lockstep::pause` does not know of it.
+        // `Lockstep::pause` pauses the session of that moment. A session that began later has to be paused here.
         if let Some(session) = self.peer.session_mut().filter(|_| is_paused) {
             session.pause(true);
         }
@@ -70,8 +70,8 @@ impl<G: LockstepGame> MatchDriver<G> {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // A peer without an open seat plays ticks and issues no inputs. Inputs that are not issued are kept for the
-            // next tick.
+            // `advance` returns whether it has issued the inputs. A peer without an open seat plays ticks without
+            // issuing inputs. Inputs that were not issued are kept for the next tick.
             if self.peer.advance(&inputs.next(own as usize))? {
                 inputs.used();
             }
@@ -98,7 +98,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     }
 
     pub(crate) fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
-        // The report plays ticks again whose events are already in the log.
+        // To make the report, the peer plays ticks again whose events are already in the log.
         self.peer.game().log().suspend();
         let report = self.peer.report(desync);
         self.peer.game().log().resume();

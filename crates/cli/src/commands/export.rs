@@ -170,7 +170,7 @@ impl Arguments {
     }
 }
 
-/// A replay that is played on demand.
+/// A replay that is played up to the tick that is needed next.
 struct Replay<'a, G: Game> {
     verified: VerifiedReplay<'a, G>,
     path: &'a PathBuf,

@@ -63,7 +63,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         play_lines(&mut copy, path, arguments, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // The number of idle ticks is limited. One tick beyond the limit is enough to fail the verification.
+    // Records at most one tick beyond the limit, because that tick already fails the verification.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle, limits).map_err(|error| error.of_file(&arguments.output))?;
@@ -108,7 +108,7 @@ fn play_lines<G: Game>(
     } else {
         Box::new(File::open(path).map_err(&read_error)?)
     };
-    // The limit for lines is larger than that of a file, because inputs take more bytes in JSON than in a replay.
+    // The size limit of the lines is larger than that of a replay, because inputs take more bytes in JSON.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(&read_error)?;

@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let bytes = context.load(&arguments.file)?;
     let keyframes = arguments.keyframes.as_deref().map(read_keyframes).transpose()?.flatten();
-    // With an interval of 1, a timeline takes over the interval of the keyframes.
+    // If the interval is 1, `use_keyframes` replaces it by the interval of the keyframes.
     let interval = if keyframes.is_some() { 1 } else { arguments.interval };
     let options = TimelineOptions { interval, ..TimelineOptions::default() };
     let mut timeline = Timeline::<G>::open(&bytes, &options, context.limits())
@@ -125,7 +125,7 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
 
 /// Reads a file of keyframes, if it exists.
 fn read_keyframes(path: &Path) -> Result<Option<(&Path, Vec<u8>)>, CommandError> {
-    // Besides the keyframes, 1 MiB is enough for the headers of the file and of each keyframe.
+    // 1 MiB more than the keyframes is enough for the headers of the file and of each keyframe.
     match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
         Ok(bytes) => Ok(Some((path, bytes))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),

@@ -52,7 +52,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
-        // After a step that fails, the state is not that of the last good tick.
+        // After a step that fails, the game no longer has the state of the last valid tick.
         let state = match failed {
             None => format!(", state {}", replay.game().state_hash()),
             Some(_) => String::new(),

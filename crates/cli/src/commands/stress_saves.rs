@@ -87,7 +87,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     let mut options = CheckOptions::default();
     if !arguments.all {
-        // With `Variant::Again`, a game that is not deterministic can be told from a save that loses state.
+        // `Variant::Again` distinguishes a game that is not deterministic from a save that lacks a part of the state.
         options.variants = vec![Variant::Again, Variant::Reloaded];
         options.variants.extend(arguments.rollback.then_some(Variant::RolledBack));
     }
@@ -141,7 +141,7 @@ impl fmt::Display for Outcome<'_> {
     }
 }
 
-/// A finding. Each line is escaped, because its texts may come from an untrusted file.
+/// A finding. Each line is escaped, because the texts may come from an untrusted file.
 struct Lines<'a>(&'a Finding);
 
 impl fmt::Display for Lines<'_> {

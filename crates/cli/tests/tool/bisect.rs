@@ -86,7 +86,7 @@ fn what_is_no_evidence_is_trouble() {
     assert!(outcome.err.contains("malformed"), "{}", outcome.err);
 }
 
-/// A player shouts, and nothing happens.
+/// A game with texts as inputs, which have no effect.
 #[derive(Clone, Serialize, Deserialize)]
 struct Shouts(u64);
 

@@ -88,7 +88,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         assert_eq!(uncached(&run(&arguments)).0, plain);
         assert!(restored());
     }
-    // Copies another entry over this one, then puts a folder in its place.
+    // Copies another entry over the entry `victim`, then replaces it by a folder.
     fs::copy(&whole[1].0, victim).unwrap();
     assert_eq!(uncached(&run(&arguments)).0, plain);
     assert!(restored());

@@ -77,7 +77,7 @@ fn commands_of_the_sandbox_come_from_json() {
     assert!(rises(&verified), "it rises after gravity is reversed");
 }
 
-/// A sum that panics in a tick after its limit of work, which must not be played.
+/// A counter that panics in any tick beyond the limits of work. `fork` must not play such a tick.
 #[derive(Clone)]
 struct Fragile(Counter);
 

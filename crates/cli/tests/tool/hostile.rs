@@ -173,7 +173,8 @@ fn a_setup_may_panic_as_well() {
     assert_eq!((line["verdict"].as_str(), line["ticks"].as_u64()), (Some("panicked"), Some(0)));
 }
 
-/// A game whose state has the text of its setup as a key. If it refuses, the text is the reason.
+/// A game whose state has the text of its setup as a key. With `REFUSES`, it refuses the setup, with the text as the
+/// reason.
 struct Echo<const REFUSES: bool>(BTreeMap<String, u64>);
 
 impl<const REFUSES: bool> Game for Echo<REFUSES> {
@@ -299,7 +300,7 @@ fn what_cannot_be_verified_says_what_it_needs() {
     let folder = Folder::new("needs");
     let later = Recording::<Later>::start(&setup(), 10).unwrap().finish().unwrap();
     let renamed = Recording::<Renamed>::start(&setup(), 10).unwrap().finish().unwrap();
-    // A header with semantics 2. The checksum of the bytes before it is computed again.
+    // A header with semantics 2. The checksum at its end is computed again.
     let mut older = Recording::<Counter>::start(&setup(), 10).unwrap().take_bytes();
     let end = older.len() - 8;
     older[12] = 2;

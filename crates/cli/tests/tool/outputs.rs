@@ -136,7 +136,7 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
-/// The results of other commands would damage a file that is written to the standard output.
+/// Result lines would damage a file that the command writes to the standard output.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_on_the_standard_output_is_nothing_but_the_file() {
@@ -151,7 +151,7 @@ fn a_file_on_the_standard_output_is_nothing_but_the_file() {
         assert_eq!(message(&piped), shown, "{to_stdout:?}");
         fs::remove_file(&to).unwrap();
     }
-    // Another device takes nothing from the results.
+    // If the file goes to another device, the result lines stay on the standard output.
     let done = tool(&["trim", &golden("box_stack"), "-o", "/dev/null"].map(String::from));
     assert!(done.stdout.starts_with(b"/dev/null: "), "{}", message(&done));
 }
@@ -177,7 +177,7 @@ fn a_redirected_standard_output_is_written_where_it_stands() {
     assert_eq!(names(&folder), ["log"]);
 }
 
-/// A process that is killed between the two leaves the file under both names.
+/// A process that is killed after it has linked the target to the temporary file leaves the file under both names.
 #[test]
 fn a_published_file_is_no_temporary_file() {
     let folder = Folder::new("outputs-published");
@@ -225,8 +225,8 @@ fn a_killed_process_leaves_the_old_file_and_what_it_recorded() {
     assert_eq!(names(&folder), ["rescued.replay", "x.replay"]);
 }
 
-/// The unfinished file of a killed recorder may be the only recording. The natural name for what is made of it is that
-/// of its target.
+/// The unfinished file of a killed recorder may be the only recording. So commands must accept it as the input for its
+/// own target, as in `trim x.replay.unfinished -o x.replay`.
 #[test]
 fn an_unfinished_file_is_an_input_like_any_other() {
     let folder = Folder::new("outputs-unfinished");
@@ -254,7 +254,7 @@ fn an_unfinished_file_is_an_input_like_any_other() {
         assert_eq!(names(&folder), ["x.replay", "x.replay.unfinished"], "{command:?}");
         fs::remove_file(&to).unwrap();
     }
-    // Nothing can be kept of this one.
+    // `trim` can keep no tick of this file.
     fs::write(&left, b"no replay").unwrap();
     assert_eq!(tool(&["trim", &left, "-o", &to].map(String::from)).status.code(), Some(1));
     assert_eq!(fs::read(&left).unwrap(), b"no replay");

@@ -94,7 +94,7 @@ fn another_interval_loses_no_keyframes_of_the_file() {
         found["simulated"].as_u64().unwrap()
     };
     seek("420", &["--interval", "100"]);
-    // The default is 300 ticks.
+    // The default interval is 300 ticks.
     for interval in [&[] as &[&str], &["--interval", "50"], &["--interval", "700"]] {
         seek("950", interval);
         assert_eq!(seek("410", interval), 10, "{interval:?}");

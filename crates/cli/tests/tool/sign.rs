@@ -218,7 +218,7 @@ fn a_secret_key_is_private_and_never_replaced_by_accident() {
         assert_eq!(line, json!({ "file": path, "key": secret.public_key().to_string(), "name": "alice" }));
         assert!(!format!("{secret:?}").contains(fs::read_to_string(&path).unwrap()[24..].trim_end()));
     }
-    // The name has to be the same when the line is read.
+    // `keygen` refuses a name if the printed line would be read back with another name.
     for name in ["a\nb", " ", "alice ", "\u{a0}alice", ""] {
         let named = run(&["keygen", "--name", name, "-o", &folder.path("other")]);
         assert_eq!(named.exit, Exit::Trouble, "{name:?}");
@@ -236,7 +236,7 @@ fn a_pipe_beside_a_replay_does_not_block() {
     assert_eq!(signers(&folder, "a.replay", &[]), not_valid("malformed", &[]));
 }
 
-/// The line names the replay, by which results are joined, and not its signature file.
+/// The line names the replay and not its signature file, because users match results with replays by these names.
 #[cfg(unix)]
 #[test]
 fn a_replay_whose_signatures_cannot_be_read_is_named() {

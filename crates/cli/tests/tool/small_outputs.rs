@@ -264,7 +264,8 @@ fn the_shortest_failing_replay_is_written_as_a_whole() {
             assert_eq!(told, "");
             return;
         }
-        // The first process creates the file before it locks it. The second process locked it in between.
+        // The first process creates the file and then locks it. Between these two steps, the second process locked the
+        // file.
         assert!(told.contains("another process is writing it"), "{told}");
     }
     panic!("the first process should usually lock the file first");

@@ -82,7 +82,8 @@ fn a_replay_that_is_cut_or_wrong_has_them_as_far_as_it_goes() {
     }
 }
 
-/// A state that exceeds a limit of work within its tick, or differs at a checkpoint, is not that of the last good tick.
+/// After a tick that exceeds a limit of work or differs at a checkpoint, the game no longer has the state of the last
+/// valid tick.
 #[test]
 fn a_wrong_state_has_no_hash() {
     let folder = Folder::new("stats-wrong");

@@ -31,7 +31,7 @@ fn a_match_is_a_line_a_summary_and_success() {
     assert_eq!((outcome.exit, outcome.err.as_str()), (Exit::Success, ""));
 }
 
-/// A worker reads only the beginning of a file that is too large, and knows the digest of the file.
+/// A worker reads only the beginning of a file that is too large, but knows the digest of the whole file.
 #[test]
 fn a_part_of_a_large_file_has_the_digest_of_the_file() {
     let bytes = replay(35);

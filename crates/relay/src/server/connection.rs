@@ -69,7 +69,7 @@ pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Erro
     }
 }
 
-/// Returns the room code of a request, in capital letters. If the request is refused, returns the status.
+/// Returns the room code of a request, in capital letters. If the relay refuses the request, returns the HTTP status.
 fn admitted(request: &Request, origins: &[String]) -> Result<String, StatusCode> {
     let origin = request.headers().get("origin").map(|origin| origin.as_bytes());
     if origin.is_some_and(|origin| {
@@ -100,7 +100,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
 }
 
 /// The address of the member with this secret. The address is a hash, which does not reveal the secret. The same secret
-/// always gives the same address, also after a lost connection or a restart of the relay. So the relay stores nothing.
+/// always gives the same address, also after a lost connection or a restart of the relay. So the relay stores no
+/// addresses.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
@@ -164,7 +165,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram. In the frame, the address of the receiver is replaced by that of the sender.
+    /// Forwards a datagram. Replaces the address of the receiver in the frame by the address of the sender.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)

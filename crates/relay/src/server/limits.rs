@@ -24,8 +24,8 @@ pub struct Limits {
     pub datagrams_per_second: u32,
     /// A member that sends nothing for this time is disconnected. In the meantime, it is pinged three times.
     pub idle: Duration,
-    /// Origins of web pages that may connect. If empty, all may. Clients without an origin, such as native ones, are
-    /// always admitted.
+    /// Origins of web pages that may connect. If empty, all pages may connect. Clients without an origin, such as
+    /// native programs, may always connect.
     pub origins: Vec<String>,
 }
 

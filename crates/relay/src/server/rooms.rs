@@ -25,7 +25,7 @@ impl Rooms {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a connection to a room. If the member already has one, the new connection replaces it.
+    /// Adds a connection to a room. If the member already has a connection, the new one replaces it.
     pub(super) fn enter(
         &self,
         code: &str,

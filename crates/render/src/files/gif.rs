@@ -29,9 +29,9 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether the current palette differs from the global one. Each frame then contains the current palette.
+    /// Whether the current palette differs from the global one. If so, each frame contains the current palette.
     is_local: bool,
-    /// Picture that is shown after the last frame.
+    /// Picture that a viewer shows after the frames written so far.
     shown: Vec<[u8; 3]>,
 }
 

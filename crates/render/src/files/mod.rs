@@ -52,7 +52,8 @@ impl<W: Write> Animation<W> {
     }
 
     /// Announces the colours of a later frame. The global palette of a GIF is made for the first frame and the
-    /// announced frames. From the first frame that it does not suit, frames contain palettes of their own.
+    /// announced frames. If the global palette does not suit a frame, this frame and all later ones contain palettes of
+    /// their own.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),

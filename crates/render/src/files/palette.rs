@@ -1,9 +1,9 @@
 //! [`Palette`]: at most 255 colours for a frame, and a transparent colour.
 //!
-//! Up to 255 colours are kept exactly. If there are more, only the most frequent colours are kept exactly, because they
-//! fill large areas, where a changed colour is visible. The other colours are divided into boxes, and each box gives
-//! its mean colour. While there are too few boxes, the box with the largest sum of squared errors in a channel is split
-//! at the mean of that channel.
+//! A frame with up to 255 colours keeps all of them exactly. A frame with more colours keeps only the most frequent
+//! ones exactly, because they fill large areas, where a changed colour is visible. The other colours are divided into
+//! boxes, and each box gives its mean colour. While there are too few boxes, the box with the largest sum of squared
+//! errors in a channel is split at the mean of that channel.
 
 use std::collections::BTreeMap;
 
@@ -56,7 +56,8 @@ impl Counts {
 
 pub(super) struct Palette {
     colours: Vec<Rgb>,
-    /// Index of the nearest colour of the palette. Contains the palette itself, and a cache for other colours.
+    /// For each colour, the index of the nearest colour of the palette. The map has all colours of the palette, and
+    /// caches other colours.
     nearest: BTreeMap<Rgb, u8>,
 }
 

@@ -75,7 +75,7 @@ impl Area {
     }
 }
 
-/// A half plane. In it, a coordinate is at most `bound`, or at least `bound` if the sign is negative.
+/// A half plane, in which one coordinate is at most `bound`, or at least `bound` if the sign is negative.
 struct Side {
     axis: usize,
     sign: f32,

@@ -189,7 +189,7 @@ impl Game for Hill {
     }
 
     fn step(&mut self, inputs: &[Drive]) {
-        // Refused commands have no effect.
+        // A command that the world refuses has no effect.
         let _driven = self.drive(inputs.first().copied().unwrap_or_default());
         self.world.step();
         let _judged = self.judge();

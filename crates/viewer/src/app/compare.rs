@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::source::SourceError;
 
-    /// A world that stands still for 100 ticks, of which those up to `end` can be reached.
+    /// A world that stands still for 100 ticks. Only the ticks up to `end` can be sought.
     struct Still {
         world: World,
         tick: u64,

@@ -16,13 +16,13 @@ const CLICK: f32 = 4.0;
 pub(super) struct Pointer {
     pub(super) at: [f32; 2],
     doing: Doing,
-    /// The button that began [`Self::doing`]. Other buttons have no effect until it is released.
+    /// The button that began the action in [`Self::doing`]. Other buttons have no effect until it is released.
     button: Option<Button>,
     shift: bool,
 }
 
 impl Pointer {
-    /// Ends what the pointer does without an effect.
+    /// Cancels the action of the pointer, which then has no effect.
     pub(super) fn cease(&mut self) {
         (self.doing, self.button) = (Doing::Nothing, None);
     }

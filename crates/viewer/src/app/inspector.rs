@@ -22,8 +22,8 @@ pub(super) struct Inspector {
     scrolled: usize,
 }
 
-/// Returns the body at a screen position. If there is none, returns the closest body within [`REACH`]. Sensors are
-/// ignored. If bodies overlap, the one with the shape in the last slot is taken, which is usually drawn on top.
+/// Returns the body at a screen position. If no body is there, returns the closest body within [`REACH`]. Sensors are
+/// ignored. If bodies overlap, takes the body whose shape is in the last slot. This body is usually drawn on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {

@@ -158,7 +158,8 @@ impl App {
         }
     }
 
-    /// Closes the current source and shows another one. Resets the comparison, the view, the selection and the player.
+    /// Closes the current source and shows another one. Resets the comparison, the view, the selection and the
+    /// playback.
     pub fn show(&mut self, source: Box<dyn Source>) {
         self.close();
         self.source = Some(source);
@@ -258,8 +259,8 @@ impl App {
             tick: source.tick(),
             ticks: source.ticks(),
             hash: Some(source.hash()),
-            // A message replaces the remarks. If it is an error about another file, a verdict beside it would seem to
-            // refer to that file.
+            // A message replaces the remarks. The message may be an error about another file. A verdict beside it would
+            // then seem to refer to that file.
             status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
         }
     }
@@ -318,7 +319,7 @@ impl App {
         }
     }
 
-    /// Requests that the recording is saved as a replay. Shows a message if there is none.
+    /// Requests that the recording is saved as a replay. Shows a message if nothing is recorded.
     pub fn save(&mut self) {
         let Some(source) = &mut self.source else { return };
         let name = format!("{}.replay", source.name());

@@ -75,7 +75,7 @@ impl Player {
 
     fn try_advance(&mut self, time: Duration, source: &mut dyn Source) -> Result<(), SourceError> {
         if source.advance(time)? {
-            // Such a source cannot be paused, and has no speed.
+            // A source with its own clock cannot be paused, and has no speed.
             *self = Player::default();
             return Ok(());
         }

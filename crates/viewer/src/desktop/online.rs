@@ -35,7 +35,7 @@ pub(super) struct OnlineArgs {
     rollback: bool,
 }
 
-/// Hides the arguments for network matches in the help of a program that has none.
+/// Hides the arguments for network matches in the help of a program without network matches.
 pub(super) fn without(command: clap::Command) -> clap::Command {
     IDS.iter().fold(command, |command, id| command.mut_arg(id, |argument| argument.hide(true)))
 }

@@ -90,8 +90,8 @@ pub enum Act {
     DragTo(Vec2<Fx>),
     /// Releases the held body, which keeps its velocity.
     Release,
-    /// Adds a dynamic body. The way from `at` to `to` gives the radius of a circle or polygon, the half extents of a
-    /// box, or the segment of a capsule, up to 50 m. If the way is shorter than 0.05 m, the size is 0.5 m.
+    /// Adds a dynamic body. The vector from `at` to `to` gives the radius of a circle or polygon, the half extents of a
+    /// box, or the segment of a capsule, up to 50 m. If the vector is shorter than 0.05 m, the size is 0.5 m.
     Spawn {
         /// Form of the body.
         form: Form,
@@ -100,7 +100,7 @@ pub enum Act {
         /// End of the drag.
         to: Vec2<Fx>,
     },
-    /// Removes the body at this point, of any kind.
+    /// Removes the body at this point, whatever its kind is.
     Delete(Aim),
     /// Sets gravity to this acceleration, in m/s².
     Gravity(Vec2<Fx>),

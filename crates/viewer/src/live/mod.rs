@@ -21,7 +21,8 @@ use hand::Hand;
 ///
 /// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
 /// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. The work of the
-/// replay may exceed the default limit of a verifier. The status then shows a lower bound of `--max-work`.
+/// replay may exceed the default limit of a verifier. The status then shows a lower bound for the verifier's argument
+/// `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;

@@ -13,9 +13,9 @@ pub(super) struct Picked {
     pub(super) point: Vec2<Fx>,
 }
 
-/// Picks a body among those for which `wanted` is true. If several bodies contain the point, the one with the shape in
-/// the last slot is picked. If none contains it, the nearest body within `aim.within` is picked. Solid shapes take
-/// precedence over sensors.
+/// Picks a body for which `wanted` is true. If several bodies contain the point, picks the body whose shape is in the
+/// last slot. If no body contains the point, picks the nearest body within `aim.within`. Solid shapes take precedence
+/// over sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };

@@ -1,7 +1,7 @@
 //! [`Mesh`]: a draw list as triangles, for the GPU.
 //!
 //! All items share a vertex format and are drawn in list order. The fragment shader computes the coverage of a pixel
-//! from [`Vertex::sample`]. For shapes it is
+//! from [`Vertex::sample`]. For shapes, the coverage is
 //!
 //! ```text
 //! coverage = clamp(reach - |distance|, 0, 1)

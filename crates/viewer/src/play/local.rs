@@ -25,7 +25,7 @@ pub struct LocalMatch<G: Game> {
     nothing: World,
 }
 
-/// Bytes of a save that it does not share with other saves. A kilobyte is added for the game's own rules.
+/// Number of bytes that a save does not share with other saves. A kilobyte is added for the game's own rules.
 fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
     1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
 }

@@ -22,8 +22,8 @@ const LEAVE_STEP: Duration = Duration::from_millis(5);
 
 /// Participant of a network match: host, player or spectator.
 ///
-/// The match follows a clock that all peers share, so it can neither be paused nor sought. The inputs of the last ticks
-/// that are shown may be guessed. The replay contains only final ticks.
+/// The match follows a clock that all peers share, so it can neither be paused nor sought. The last ticks that are
+/// shown may have predicted inputs. The replay contains only final ticks.
 ///
 /// ```
 /// use std::time::Duration;
@@ -230,7 +230,7 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
     fn close(&mut self) {
         self.peer.leave();
         for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {
-            // A peer that has left still has to tell the others.
+            // A peer that leaves needs further updates, to tell the other peers.
             let is_closed = matches!(self.peer.status(), None | Some(Status::Closed));
             if is_closed || self.ended.is_some() || self.advance(LEAVE_STEP).is_err() {
                 break;

@@ -54,7 +54,7 @@ fn own_state<G: Game>(game: &G) -> Fields {
     let all = fields(&game.save()).unwrap_or_default();
     let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();
     let Some(first) = world.first().map(Field::path) else { return listed(&all) };
-    // The path of the world inside the save precedes the path of the world's first field.
+    // In the save of the game, the path of the world's first field begins with the path of the world.
     let inside = all.iter().find_map(|field| field.path().strip_suffix(first)).map(str::to_owned);
     let of_world: BTreeSet<&str> = world.iter().map(Field::path).collect();
     let is_own = |field: &&Field| match inside.as_deref() {

@@ -40,8 +40,8 @@ impl<S> History<S> {
         self.frames.contains_key(&tick)
     }
 
-    /// Adds a save. `bytes` is its memory that is not shared with other saves. Then drops the saves that are least
-    /// useful at tick `here`, until the others fit in the budget or only the first and the last are left.
+    /// Adds a save. `bytes` is the memory that it does not share with other saves. Then drops the saves that are least
+    /// useful at tick `here`, until the remaining saves fit in the budget or only the first and the last are left.
     pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
         if self.has(tick) {
             return;

@@ -22,8 +22,8 @@ const SAVES_BYTES: usize = 256 << 20;
 pub(crate) struct Recording<G: Game> {
     game: G,
     tick: u64,
-    /// The recorder before the first tick. When recorded ticks are dropped, a copy of it records the remaining ones
-    /// again.
+    /// The recorder before the first tick. When recorded ticks are dropped, a copy of this recorder records the
+    /// remaining ones again.
     blank: Recorder<G>,
     recorder: Recorder<G>,
     log: InputLog<G::Input>,
@@ -89,13 +89,13 @@ impl<G: Game> Recording<G> {
         self.tick == self.ticks()
     }
 
-    /// Work units of all recorded ticks by [`Game::work`]. A verifier also counts those of the setup, and those that
-    /// become known only while a tick runs.
+    /// Work units of all recorded ticks by [`Game::work`]. A verifier also counts the work of the setup, and work that
+    /// becomes known only while a tick runs.
     pub(crate) fn work(&self) -> u64 {
         self.work.last().copied().unwrap_or(0)
     }
 
-    /// Plays and records the next tick. Recorded ticks from there on are dropped first.
+    /// Plays and records the next tick. First drops the recorded ticks after the current one.
     pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), RecordingError> {
         let work = self.game.work(inputs);
         if work > Limits::default().tick_work {

@@ -118,8 +118,8 @@ pub trait Source {
         None
     }
 
-    /// Closes the source before it is replaced or the program ends. For example, leaves a network match. This should
-    /// take at most a second.
+    /// Closes the source before it is replaced or the program ends. A network match, for example, is left. Closing
+    /// should take at most a second.
     fn close(&mut self) {}
 
     /// Names and values of the state of the game's own rules, besides the world.

@@ -32,7 +32,8 @@ impl Keyboard {
     }
 }
 
-/// Whether a key repeats while it is held. Keys that step do; keys that toggle a setting do not.
+/// Whether a key repeats while it is held. Keys that change the tick, speed or zoom by a step repeat. Keys that toggle
+/// a setting do not.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))

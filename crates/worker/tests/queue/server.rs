@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for an expected event.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Commands that start the server. The second is its path in Debian, because this folder is not in every search path.
+/// Commands that start the server. The second is its path in Debian, because `/usr/sbin` is not in every search path.
 const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
 
 /// Process that is killed on drop.

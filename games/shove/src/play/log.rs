@@ -1,4 +1,4 @@
-//! [`Log`]: events of the match as lines, for a person or as JSON.
+//! [`Log`]: events of the match as lines of text or JSON.
 
 use std::error::Error;
 use std::io::Write;
@@ -31,7 +31,7 @@ impl Log {
         Log { json, tick: None, stall, delay: None, desync: None, is_over: false }
     }
 
-    /// In JSON, writes the address of this peer. Otherwise writes nothing.
+    /// Writes the address of this peer if the output is JSON.
     pub(super) fn say_bound(&self, peer: &mut UdpPeer) -> std::io::Result<()> {
         let address = peer.transport_mut().local_address()?.to_string();
         if self.json {
@@ -58,7 +58,7 @@ impl Log {
         }
     }
 
-    /// Tracks progress. In JSON, writes the first tick and changes of the delay.
+    /// Tracks progress. If the output is JSON, writes the first tick and changes of the input delay.
     pub(super) fn watch(&mut self, peer: &UdpPeer, now: Duration) {
         let tick = peer.tick();
         match &mut self.tick {
@@ -83,7 +83,7 @@ impl Log {
         }
     }
 
-    /// Figures about this peer for the last line.
+    /// Statistics of this peer, for the last line.
     pub(super) fn summary(&self, peer: &UdpPeer) -> Value {
         let statistics = peer.session().map(|session| session.statistics());
         let replayed = statistics.map(|statistics| (statistics.replayed, statistics.replayed_max));

@@ -139,7 +139,7 @@ fn bots_and_empty_chairs_fill_the_table() {
     assert!(Netplay::new("shove", &alone, &players, 2).is_err(), "a match with one seat should be refused");
 }
 
-/// A disc in the seat's colour for each player who has not fallen, and a score for each seat.
+/// The viewer draws a disc in the seat's colour for each player who has not fallen, and a score for each seat.
 #[test]
 fn players_and_scores_are_seen() {
     let mut netplay = for_two(1, 2);
@@ -211,7 +211,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
         assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
-    // No peer answers the host, which leaves and waits for at most half a second.
+    // The host leaves. No peer answers, so it waits for half a second at most.
     let [host, _] = &mut guests;
     host.close();
     assert!(host.status().ends_with("out of the match"), "{}", host.status());

@@ -40,7 +40,7 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
-    // Multiplied by 12 and by the denominator of pi.
+    // 1 and pi, both multiplied by 12 and by the denominator of pi.
     let (over, pi) = (12 * PI_DENOMINATOR, 12 * PI_NUMERATOR);
     let area = over * (4 * a * b + 4 * (a + b) * r) + pi * r * r;
     let core = over / 3 * 4 * a * b * (a * a + b * b);
@@ -129,7 +129,7 @@ fn symmetric_shapes_keep_their_centre() {
     assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
 }
 
-/// The outline with at least 4096 chords per turn. The relative error of its sectors is at most 4e-7.
+/// The outline, with at least 4096 chords per turn of its arcs. The relative error of a sector's area is at most 4e-7.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();

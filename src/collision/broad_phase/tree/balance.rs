@@ -3,7 +3,7 @@
 use super::{IMBALANCE_MAX, Tree, perimeter};
 
 impl Tree {
-    /// Exchanges a child that is too low with the higher child of its sibling.
+    /// If one child is too low, exchanges it with the higher child of its sibling.
     pub(super) fn balance(&mut self, at: u32) {
         let [a, b] = self.at(at).children;
         let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
@@ -14,8 +14,8 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling if that shrinks the sibling. The new height may differ from
-    /// `height_before` by at most one, which the ancestors can compensate.
+    /// Exchanges a child with a child of its sibling if the exchange shrinks the sibling. The new height differs from
+    /// `height_before` by at most one, because the ancestors can compensate no more.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
@@ -37,7 +37,7 @@ impl Tree {
         }
     }
 
-    /// Whether a node may have the first of three nodes as a child and the other two as grandchildren.
+    /// Whether a node stays balanced with the first of three nodes as a child and the other two as grandchildren.
     fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);

@@ -6,11 +6,11 @@ use super::{NONE, Node, Tree};
 use crate::body::CollisionClass;
 use crate::collision::contact::Pair;
 
-/// Number of found pairs that are buffered.
+/// Number of buffered pairs at which the buffer is reported and emptied.
 const FOUND_MAX: usize = 256;
 
 /// List with a branch-free push: overlaps are nearly random, and a mispredicted branch costs more than an unnecessary
-/// store. A pair is always written, but counted only if it is wanted.
+/// store. A push always writes the pair, but counts only a wanted pair.
 #[derive(Clone, Debug, Default)]
 struct PairList {
     pairs: Vec<Pair>,
@@ -54,7 +54,7 @@ pub(in crate::collision::broad_phase) struct Meetings {
 
 impl Meetings {
     /// Finds each pair of overlapping boxes of a tree once, except within subtrees of one collision class. Skips a pair
-    /// of nodes if `wanted` holds for neither.
+    /// of nodes if neither of them is `wanted`.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,

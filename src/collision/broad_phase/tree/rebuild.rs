@@ -40,7 +40,7 @@ impl Tree {
         self.nodes.clear();
         self.leaves.clear();
         self.vacant = NONE;
-        // The last box of a repeated slot is kept.
+        // If a slot repeats, its last box counts.
         for (slot, fat) in boxes {
             self.leaves.resize(self.leaves.len().max(slot as usize + 1), NONE);
             match self.leaf_of(slot) {
@@ -122,7 +122,7 @@ impl Tree {
     fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
         waiting.clear();
         waiting.push(Part { start: 0, end: loose.len(), parent: NONE });
-        // Depth first.
+        // Takes the last part first, so that the nodes are stored depth first.
         while let Some(Part { start, end, parent }) = waiting.pop() {
             let node = match loose[start..end] {
                 [] => continue,

@@ -79,7 +79,8 @@ fn square(x: Fx, y: Fx, half: Fx) -> Aabb {
     Aabb::new(corner, corner).expanded(half)
 }
 
-/// The smallest tree of a height has one child that is as high as possible, and the other as low.
+/// The smallest tree of a given height has one child that is as high as possible, and one that is as low as the balance
+/// allows.
 #[test]
 fn the_stack_holds_a_search_of_the_highest_tree() {
     let imbalance = IMBALANCE_MAX as usize;
@@ -201,7 +202,7 @@ fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
         tree.set_many(boxes[..some].iter().copied());
         (0..30).for_each(|_| tree.set_collision_class(rng.below(1000), random_class(&mut rng)));
         tree.validate();
-        // Strays may raise the cost until the next refit.
+        // Leaves that have moved away without being relinked may raise the cost until the next refit.
         assert!(
             tree.strays > 0 || tree.cost() < fresh * 3 / 2,
             "round {round}: cost {} of {fresh}",

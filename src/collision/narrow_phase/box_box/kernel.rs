@@ -7,7 +7,7 @@
 //! separation = |n . d| - n . v - max |n . w|
 //! ```
 //!
-//! is the separation from the nearer of the face and the opposite face.
+//! is the separation of the boxes along `n`, from the nearer of the face and the opposite face.
 
 use super::vector::{Vector, dot, minus, negated, plus, select_vector};
 use super::{Batch, Manifolds, Turned};
@@ -47,7 +47,7 @@ struct Edge<T> {
     end: Vector<T>,
 }
 
-/// Position along the reference edge from its start in units of `Length`, and height above it in units of `Step`.
+/// Position along the reference edge from its start in units of `Length`, and height above the edge in units of `Step`.
 #[derive(Clone, Copy)]
 struct ClipPoint<T> {
     along: T,
@@ -314,8 +314,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height of an end of the incident edge after clipping by `past`, if positive. `past` and `span`, the extent of the
-/// incident edge, are measured along the reference edge.
+/// Height of an end of the incident edge after clipping. If `past` is positive, it is the length to cut off at this
+/// end. `past` and `span`, the extent of the incident edge, are measured along the reference edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,

@@ -1,6 +1,7 @@
 //! Clipping of the incident edge of one outline against the reference face of another.
 //!
-//! Positions are along the face and above it:
+//! With the start `v1`, the tangent `t` and the normal `n` of the reference face and the radii `rA` and `rB`, the
+//! position of a point of the incident edge is measured along and above the face:
 //!
 //! ```text
 //! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
@@ -12,7 +13,7 @@ use crate::collision::narrow_phase::circle_hull::step_bits;
 use crate::collision::shape::posed::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
-/// Fraction bits of a step beyond those of a length.
+/// Number of fraction bits that a `Step` has more than a `Length`.
 pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
 /// Fraction bits of the clip fraction, whose product with an edge of at most 570 m has 63 bits.
@@ -73,8 +74,8 @@ pub(in crate::collision) fn clip(
     let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
-        // Deeply overlapping outlines may have no incident edge in front of the face. Their deepest corner still pushes
-        // them apart.
+        // If outlines overlap deeply, no incident edge may be in front of the face. The deepest corner then pushes them
+        // apart.
         let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
             Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),

@@ -172,7 +172,7 @@ fn a_single_link_is_a_segment() {
         let (of_link, of_segment) = (found(&link, &mover, fx!(0.05)), found(&segment, &mover, fx!(0.05)));
         assert_eq!(of_link.points().len(), of_segment.points().len(), "{mover:?} on {line:?}");
         let (Some(a), Some(b)) = (nearest(&of_link), nearest(&of_segment)) else { continue };
-        // A segment inside a polygon may push it to either side.
+        // A segment inside a polygon may push the polygon to either side.
         if b < -radius {
             continue;
         }

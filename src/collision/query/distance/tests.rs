@@ -1,4 +1,4 @@
-//! Compared with brute force.
+//! Compares distances with brute force.
 
 use super::*;
 use crate::collision::shape::support::{samples, to_grid};

@@ -35,8 +35,8 @@ fn rays_hit_what_sphere_tracing_hits() {
             (Ok(None), None) => misses += 1,
             (Ok(Some(way)), Some(hit)) => {
                 hits += 1;
-                // The search stops 2e-7 m before the surface, which is a longer way at a grazing angle. The error is
-                // therefore measured across the surface.
+                // Sphere tracing stops 2e-7 m before the surface. At a grazing angle, this is a longer way along the
+                // ray, so the error is measured across the surface.
                 let found = fx_mul(hit.fraction, translation.length());
                 let steep = -translation.normalized().unwrap().widen().dot(hit.normal.widen());
                 assert!(steep >= 0, "{hit:?} {shape:?}");
@@ -141,7 +141,7 @@ fn segments_are_hit_from_both_sides_and_at_their_ends() {
     assert_eq!(hit(fx!(0), fx!(0), fx!(0), fx!(0)), None);
     assert_eq!(hit(fx!(0), fx!(0), fx!(0.5), fx!(0)), None);
 }
-/// The point of a hit may be outside of the surface by a rounding error.
+/// A rounding error may put the point of a hit outside of the surface.
 #[test]
 fn a_ray_that_continues_from_a_hit_does_not_pass_through() {
     let mut rng = Rng::new(6);

@@ -2,7 +2,8 @@ use super::*;
 use crate::collision::shape::support::samples;
 use crate::math::{Rng, fx_div, fx_mul};
 
-/// Distance that B travels to the skin of A. `Err` if undecided.
+/// Distance that B travels to the skin of A, by sphere tracing. `Err` if sphere tracing cannot decide: see
+/// [`samples::march`].
 fn stepped(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
     let length = translation.length();
     samples::march(length, |way| {

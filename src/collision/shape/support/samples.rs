@@ -43,8 +43,8 @@ pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
     support(rng).moved(to_grid(vector(rng, spread)))
 }
 
-/// Sphere tracing: distance in metres along a path of `length` metres at which it reaches a surface, within 2e-7 m.
-/// `gap_at` returns the distance from the surface. `Err` if the path passes within 2e-6 m of the surface without
+/// Sphere tracing: distance in metres along a path of `length` metres at which the path reaches a surface, within 2e-7
+/// m. `gap_at` returns the distance from the surface. `Err` if the path passes within 2e-6 m of the surface without
 /// reaching it, or takes more than 2000 steps.
 pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) -> Result<Option<Fx>, ()> {
     let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);

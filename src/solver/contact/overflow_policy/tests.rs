@@ -160,7 +160,7 @@ fn unchecked_contacts_end_as_checked_ones() {
     assert!(unchecked > 2000 && wild > 2000, "{unchecked} trials were within the bounds and {wild} were not");
 }
 
-/// Impulses `d` on a row, from rest or from the limit of speeds.
+/// Impulses `d` on a row. All velocity components equal `start` at first.
 struct Applying {
     row: Row<WIDTH>,
     d: Ints<WIDTH>,
@@ -182,7 +182,8 @@ impl Kernel<WIDTH> for &mut Applying {
     }
 }
 
-/// Batches of another width, or with other contacts, apply an impulse in one step or in several.
+/// Whether `apply` takes one step or several depends on the impulses in all lanes. The result in a lane must depend
+/// only on its own impulse.
 #[test]
 fn an_impulse_changes_velocities_alike_beside_any_other() {
     let mut rng = Rng::new(31);

@@ -1,4 +1,4 @@
-//! Every backend computes the rows of the equations, which are evaluated here one number at a time.
+//! Every backend computes the rows that the equations give. These tests evaluate the equations one number at a time.
 
 use super::super::super::row::MassFractions;
 use super::*;

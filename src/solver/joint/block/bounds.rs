@@ -1,8 +1,9 @@
 //! Units with bounds in a block: limits, whose impulses are not negative, and motors and springs of limited force.
 //!
 //! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
-//! the units without bounds, and holds active units beyond a bound at that bound, until no active unit is beyond a
-//! bound. Among the motors, the first [`ROUNDS_MAX`] rounds hold only those that are furthest beyond their bounds.
+//! the units without bounds. Then it deactivates the active units beyond a bound, and holds them at that bound. The
+//! rounds end when no active unit is beyond a bound. Among the motors, the first [`ROUNDS_MAX`] rounds deactivate only
+//! those that are furthest beyond their bounds.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -30,7 +31,7 @@ const OPEN_SCALE: i64 = ONE - (1 << 20);
 /// the impulse times `1 - S^2`, and impulses under leverage are large.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of initial rounds in which, among the motors, only those furthest beyond their largest force are held.
+/// Number of initial rounds that deactivate, among the motors, only those furthest beyond their largest force.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
@@ -67,7 +68,7 @@ impl Block {
         for bounded in bounded.iter_mut() {
             let unit = &units[bounded.unit];
             let (impulse, change) = (impulses[unit.row], wanted[unit.row]);
-            // As with contacts, a gap without an impulse is left to the next sub-step.
+            // As with contacts, the relax pass leaves out a limit that is not reached and has no impulse.
             let untouched = pass == Pass::Relax && impulse == 0 && unit.is_open(hinges, list);
             (bounded.is_active, bounded.held) = match pass {
                 _ if !unit.is_spring() => {
@@ -84,10 +85,11 @@ impl Block {
         }
     }
 
-    /// Deactivates units beyond a bound. Returns whether there were any.
+    /// Deactivates active units beyond a bound. Returns whether there were any.
     ///
-    /// With `furthest_only`, a motor is deactivated only if its [`Unit::excess`] is at least half the largest one:
-    /// while a brake holds a strong motor, the equations give both the same impulse, and only the brake should slip.
+    /// With `furthest_only`, a motor is deactivated only if its [`Unit::excess`] is at least half the largest excess.
+    /// While a brake holds a strong motor, the equations give the brake and the motor the same impulse, but only the
+    /// brake should slip.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {

@@ -1,11 +1,13 @@
 //! The choice and the order of the joints that are solved in blocks.
 //!
 //! One iteration solves a body with one joint exactly, and a chain of similar bodies well. It fails at bodies whose
-//! joints disturb each other, and may add energy there. A body is *crowded* if two or more joints hold it and
+//! joints disturb each other, and may add energy there. An impulse at the point of a hinge changes the velocity of the
+//! point through both bodies. The *share* of a body is its part of this change: large if the body is light or its arm
+//! is long. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them is not a revolute joint, or
-//! - it is so light, or its arms are so long, that it has a large share in the mobility of the points of two hinges, or
-//!   that the sum of its shares over all hinges, without the largest one, is large.
+//! - its share is large at two hinges ([`PAIR_MIN`]), or
+//! - the sum of its shares over all hinges, without the largest share, is large ([`SUM_MIN`]).
 //!
 //! Joints of a crowded body are solved in a block if they have rows for a block. Crowded bodies with a common joint
 //! share a block, up to [`ROWS_MAX`] rows.
@@ -24,11 +26,11 @@ use crate::math::{Fx, Unit, fx_mul};
 /// size costs about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
-/// A body is crowded if its share in the mobility of each of two hinges is at least this.
+/// A body is crowded if its share at each of two hinges is at least this.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// A body is crowded if the sum of its shares, without the largest one, is at least this. In cloth of discs the sum is
-/// 1.5.
+/// A body is crowded if the sum of its shares, without the largest share, is at least this. In cloth of discs the sum
+/// is 1.5.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// A joint that may be solved in a block.
@@ -39,12 +41,12 @@ pub(in super::super) struct Candidate {
     /// Number of rows in a block. Springs, limits, motors along one direction and rows that hold the bodies count. A
     /// joint without such rows is not solved in a block.
     pub(in super::super) rows: u32,
-    /// Whether the joint has rows besides that of a motor.
+    /// Whether the joint has rows besides the row of a motor.
     pub(in super::super) holds: bool,
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
     pub(in super::super) reduced_mass: Fx,
-    /// Shares in the mobility of the point of a revolute joint; 0 for other joints.
+    /// Shares of the bodies at the point of a revolute joint; 0 for other joints.
     pub(in super::super) shares: [Unit; 2],
 }
 
@@ -161,16 +163,17 @@ impl Choice {
         for first in 0..candidates.len() {
             let is_chosen = candidates[first].rows > 0
                 && candidates[first].bodies.iter().any(|&body| self.places[body as usize] != NOT_CROWDED);
-            // A block is limited in size, so that one that starts elsewhere may leave out this joint.
+            // A block that starts at another joint may be full before it reaches this joint.
             while is_chosen && !self.settled[first] {
                 self.add_block(candidates, index(first));
             }
         }
     }
 
-    /// Adds a block of joints in reach of `start`.
+    /// Adds a block of joints that crowded bodies connect with `start`.
     fn add_block(&mut self, candidates: &[Candidate], start: u32) {
-        // The first walk finds a joint at the rim of the block. An order that starts there has a narrow envelope.
+        // The first walk finds a joint at the rim of the block. The order that starts at this joint gives the matrix a
+        // narrow envelope (`matrix.rs`).
         self.walk(candidates, start);
         let rim = self.queue.last().copied().unwrap_or(start);
         for &joint in &self.queue {

@@ -24,13 +24,13 @@ const KICK_MAX: i64 = 1000 * ONE;
 /// The change of the torque of a force while its body rotates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Leverage {
-    /// No change: a torque, or a spring between two points, for which the change is neglected.
+    /// No change: for a torque, and for a spring between two points, whose change is neglected.
     None,
-    /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios.
+    /// The point turns with the body, but the force does not: the derivative is `F . r`. Contains the lever ratios.
     AtPoint([Vec2<Ratio>; 2]),
-    /// The force along an axis turns with A, and acts at a point of B. `|F|` times the length of a body's arm is used.
-    /// This is at least the derivative with respect to the rotation of that body. Contains the lengths of the lever
-    /// ratios.
+    /// The force along an axis turns with A, and acts at a point of B. The stiffness is estimated as `|F|` times the
+    /// length of the arm, which is at least the derivative with respect to the rotation of the body. Contains the
+    /// lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }
 

@@ -1,8 +1,8 @@
 //! A symmetric positive definite matrix in an envelope, and its Cholesky factor.
 //!
 //! Rows are scaled so that the diagonal is 1 (`scaling.rs`). Entries of the matrix and of its factor `C` are then at
-//! most 1, and by the Cauchy-Schwarz inequality so are partial sums of products of two rows of `C`. 32-bit entries with
-//! 30 fraction bits and 64-bit sums cannot overflow.
+//! most 1. By the Cauchy-Schwarz inequality, partial sums of the product of two rows of `C` are at most 1, too. 32-bit
+//! entries with 30 fraction bits and 64-bit sums therefore cannot overflow.
 //!
 //! ```text
 //! A = C C^T,   Cij = (Aij - sum Cik Cjk) / Cjj,   Cii = sqrt(Aii - sum Cik^2),   k < j
@@ -21,7 +21,7 @@ pub(super) const ONE: i64 = 1 << 30;
 /// much to the diagonal.
 const PIVOT_MIN: i64 = 1 << 44;
 
-/// Entries below the diagonal, which is 1.
+/// Entries below the diagonal. The diagonal is 1 and not stored.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Matrix {
     first: Vec<usize>,
@@ -114,7 +114,7 @@ impl Factor {
     }
 }
 
-/// The product of two rows of a factor, with 60 fraction bits. It may wrap after a pivot was clamped.
+/// The product of two rows of a factor, with 60 fraction bits. The sum may wrap after a pivot was clamped.
 fn dot(a: &[i32], b: &[i32]) -> i64 {
     a.iter().zip(b).map(|(&a, &b)| i64::from(a) * i64::from(b)).fold(0, i64::wrapping_add)
 }

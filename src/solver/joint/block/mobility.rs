@@ -34,7 +34,7 @@ impl Mobility {
         self.spins != [ONE; 2]
     }
 
-    /// The part of an entry of `K` that comes from rotations, or of `D` if `other` is `e`: the sum over both bodies of
+    /// The part of an entry of `K` (or of `D` if `other` is `e`) that comes from rotations: the sum over both bodies of
     /// `a e other` times the factor of geometric stiffness.
     pub(super) fn turning(&self, e: [Ratio; 2], other: [Ratio; 2]) -> i64 {
         let MassFractions { a, b } = self.fractions;

@@ -1,9 +1,9 @@
 //! Blocks: groups of joints that are solved together, because iterations over single joints do not converge.
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are the heavy-ball method of B. Polyak
-//! (1964) with momentum 1. `choice.rs` finds such joints. Their rows `i` that are not held at a bound (`bounds.rs`) get
-//! the changes `d` that satisfy the softness of every row at once, instead of the changes `w` that each row alone would
-//! make:
+//! (1964) with momentum 1. `choice.rs` finds such joints. A block solves their rows `i` together, except rows that are
+//! held at a bound (`bounds.rs`). The impulse changes `d` satisfy the soft constraints of all rows at once. A row alone
+//! would change its impulse by `w`:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
@@ -14,12 +14,13 @@
 //! The scale of a spring between two points contains its softness, so that its `S` is 1.
 //!
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies and `m_least`
-//! the smallest one in the block, because the matrix is symmetric for impulses but not for speeds.
+//! the smallest reduced mass in the block, because the matrix is symmetric for impulses but not for speeds.
 //!
 //! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
 //! eigenvalue of its matrix is at least the smallest impulse scale, even if rows depend on each other, as in a loop of
-//! welds. With springs between points at long arms it may be smaller, so that `matrix.rs` bounds the pivots. In the
-//! relax pass, which has no impulse scales, [`EXCESS`] is added to the diagonal. `L` has 32 fraction bits.
+//! welds. With springs between points at long arms the eigenvalue may be smaller. `matrix.rs` therefore bounds the
+//! pivots. In the relax pass, which has no impulse scales, [`EXCESS`] is added to the diagonal. `L` has 32 fraction
+//! bits.
 
 mod bounds;
 mod choice;
@@ -47,8 +48,8 @@ use scales::{Scales, mass_share};
 use scaling::{ScaledRow, root_and_inverse};
 use unit::Unit;
 
-/// Addition to the diagonal in the relax pass, with 30 fraction bits: 2^-14. An undisturbed row keeps this share of its
-/// velocity.
+/// Addition to the diagonal in the relax pass, with 30 fraction bits: 2^-14. A row that no other row disturbs keeps
+/// this share of its velocity.
 const EXCESS: i64 = 1 << 16;
 
 #[derive(Clone, Debug, Default)]
@@ -173,7 +174,7 @@ impl Blocks {
     }
 
     /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start. At a light body
-    /// between heavy ones, large impulses of the last pose would not cancel at the new one.
+    /// between heavy ones, large impulses of the last pose would not cancel at the new pose.
     pub(super) fn start_sub_step(
         &mut self,
         hinges: &HingeSet,
@@ -206,7 +207,7 @@ impl Blocks {
 }
 
 impl Block {
-    /// `share` is the smallest reduced mass of the block over that of the unit.
+    /// `share` is the smallest reduced mass of the block divided by the reduced mass of the unit.
     fn push(&mut self, mut unit: Unit, share: i64) {
         unit.row = self.bias.scales.len();
         let mass = root_and_inverse(share);
@@ -309,7 +310,7 @@ impl Block {
     }
 }
 
-/// Fraction bits of the numbers of a block beyond those of a speed.
+/// Number of fraction bits that the numbers of a block have in addition to those of a speed.
 const EXTRA_BITS: u32 = 32 - Speed::FRAC_NBITS;
 
 /// Scalar product with 60 fraction bits.

@@ -1,4 +1,4 @@
-//! Scales rows and point blocks so that their own part of the matrix is 1.
+//! Scales rows and point blocks so that their diagonal blocks of the matrix are identities.
 //!
 //! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` relates an impulse (times the
 //! sum of the inverse masses) to the change of velocity. With a lower triangular `R` and `K = R R^T`:
@@ -24,7 +24,7 @@ use super::mobility::Mobility;
 /// The scaled Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
 pub(super) type ScaledRow = [[i32; 3]; 2];
 
-/// The entries `11`, `21` and `22` of `R` and `R^-1`, with 30 fraction bits. A row has only the first.
+/// The entries `11`, `21` and `22` of `R` and `R^-1`, with 30 fraction bits. A row has only the entry `11`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Scaling {
     root: [i64; 3],
@@ -134,7 +134,7 @@ fn apply_transposed(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
     [t_11 * x + t_21 * y, t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
-/// The product of two numbers, one of which has 30 fraction bits, in the format of the other one.
+/// The product of two numbers. One of them has 30 fraction bits, and the product has the format of the other.
 pub(super) fn product(a: i64, b: i64) -> i64 {
     saturate_wide(round_shift_wide(i128::from(a) * i128::from(b), 30))
 }

@@ -180,7 +180,7 @@ impl Unit {
         }
     }
 
-    /// For each row, the change of its impulse, a speed, in one iteration over this row alone, from an impulse of 0.
+    /// For each row, the change of its impulse (a speed) if an iteration solved this row alone, from an impulse of 0.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -223,7 +223,8 @@ impl Unit {
         matches!(self.source, Source::Part(ListPart::Point(_)))
     }
 
-    /// Factors of the impulse scales in the equations: `L` of a row, or `p` of a spring between two points.
+    /// The numbers that the equations multiply by the impulse scales: `L` of a row, or `p` of a spring between two
+    /// points.
     pub(super) fn yielding(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         match (self.source, self.softness[0]) {
             (Source::Part(ListPart::Point(_)), Some(softness)) => {
@@ -299,7 +300,7 @@ impl Unit {
         }
     }
 
-    /// The body and the root of its mass fraction. `None` if no impulse changes the body.
+    /// The body on a side and the square root of its mass fraction. `None` if no impulse changes the body.
     pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
         (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }

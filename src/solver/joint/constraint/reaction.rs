@@ -14,8 +14,8 @@ use crate::math::{Fx, Vec2, fx_mul, widen};
 use crate::simd::{Machine, Quad};
 
 impl JointSet {
-    /// The force, and the torque about B's anchor, that a joint exerted on B in the last sub-step. They are computed
-    /// from the velocity that the joint's warm start gives to one body at rest. Overwrites the set's constraints.
+    /// The force, and the torque about B's anchor, that a joint exerted on B in the last sub-step. Both are computed
+    /// from the velocity that the joint's warm start gives to a body at rest. Overwrites the set's constraints.
     pub(in crate::solver) fn reaction(
         &mut self,
         joint: &Joint,
@@ -62,8 +62,8 @@ impl JointSet {
             let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
             (force, torque.saturating_sub(arm.widen().cross(force)))
         };
-        // The velocity of the lighter body has more significant bits. The spin of a body that cannot turn is 0, so that
-        // the torque is measured at the other one.
+        // The velocity of the lighter body has more significant bits. If a body cannot turn, its spin is 0, and the
+        // torque is measured at the other body.
         let is_lighter = a.has_mass() && (!b.has_mass() || a.mass() < b.mass());
         let (force, _) = measured(is_lighter);
         let torque = match (turns(a), turns(b)) {

@@ -37,7 +37,7 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     has_spring: bool,
     has_drive: bool,
     has_limit: bool,
-    /// Whether a row holds the angle in any lane. Otherwise the relax pass leaves out spring rows.
+    /// Whether a row holds the angle in any lane. If no row does, the relax pass leaves out the spring rows.
     holds: bool,
 }
 
@@ -280,8 +280,8 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Solves the lower limits (side 0) or the upper limits (side 1). As with contacts, a gap that the bias pass has
-    /// not closed is left to the next sub-step.
+    /// Solves the lower limits (side 0) or the upper limits (side 1). As with contacts, the relax pass leaves out a
+    /// limit that is not reached and has no impulse.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,
@@ -316,7 +316,7 @@ impl<const N: usize> AngleRows<N> {
     }
 }
 
-/// The row of the upper limit is reversed.
+/// `value` for the lower limit (side 0), negated for the upper limit, whose row is reversed.
 #[inline(always)]
 fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
     if side == 0 { value } else { L::sub(L::splat(0), value) }

@@ -24,11 +24,12 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) lambda: [Ints<N>; 2],
     /// Whether the hinges have rows on the angle, in [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
-    /// Whether the hinges have a softness of their own. It is equal for all of them, and stored in the record.
+    /// Whether the hinges have a softness of their own. All hinges of a batch then have the same softness, which the
+    /// record contains.
     pub(super) is_tuned: bool,
 }
 
-/// Constants for the refresh of a batch, and the joints to which its results belong.
+/// Constants for the refresh of a batch, and the joints to which the impulses of the batch belong.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Records<const N: usize> {

@@ -82,8 +82,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses in one iteration over each part alone, from impulses of 0: [`Self::take_impulses`]
-    /// has moved the impulses to the block.
+    /// The changes of the impulses if an iteration solved each part alone. The impulses start at 0, because
+    /// [`Self::take_impulses`] has moved them to the block.
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,

@@ -76,7 +76,7 @@ impl HingeBody {
     }
 }
 
-/// The shares of two bodies in the mobility at the anchor of a hinge, `a (2 + e^2)`.
+/// The shares of two bodies in the mobility at the anchor of a hinge. The mobility of a body is `a (2 + e^2)`.
 pub(in super::super) fn shares(joint: &Joint, [a, b]: [&HingeBody; 2]) -> [Unit; 2] {
     let fractions = MassFractions::of_masses(a.mass, b.mass);
     let mobility = |frame: &JointFrame, body: &HingeBody, fraction: Unit| {
@@ -110,7 +110,7 @@ impl Turning {
     }
 }
 
-/// `number factor`, computed in two parts, each of which fits 64 bits.
+/// The product of a number and a factor, computed in two parts, each of which fits 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
     let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
     number * high + round_shift(number * low, 32)
@@ -174,7 +174,7 @@ impl Input {
         }
     }
 
-    /// The body that the hinge holds, if no impulse moves the other one and the joint has no softness of its own.
+    /// The body that the hinge holds, if no impulse moves the other body and the joint has no softness of its own.
     pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
             _ if self.is_tuned => None,

@@ -1,8 +1,8 @@
 //! Hinges: revolute joints and welds with rigid anchors, solved in batches.
 //!
 //! `refresh` computes lever ratios, gains and gaps at the current pose. `warm_start` and `solve` change velocities by
-//! the point block of `point_block.rs`. `angle` does all of this for the rows on the angle. `prepare` fills batches
-//! with hinges of one colour, and returns their impulses to the state.
+//! the point block of `point_block.rs`. `angle` does the same for the rows on the angle. `prepare` fills batches with
+//! hinges of one colour, and returns their impulses to the state.
 
 mod angle;
 mod angle_input;
@@ -61,7 +61,7 @@ pub(super) struct Poses<'a> {
     pub(super) body_rotations: &'a [BodyRotation],
 }
 
-/// Inputs of all hinges, and batches of the overflow and of hinges in blocks. [`HingeShare`] has the others.
+/// Inputs of all hinges, and batches of the overflow and of hinges in blocks. [`HingeShare`] has the other batches.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
     /// Inputs of all hinges, in the order of the state.
@@ -130,7 +130,7 @@ impl HingeShare {
     }
 }
 
-/// Refreshes of the next operation, for ordinary and for anchored hinges.
+/// The refresh that the next operation performs, for ordinary and for anchored hinges.
 fn refreshes<'a>(is_stale: &mut bool, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
     let (is_stale, tuning) = (mem::take(is_stale), context.tuning);
     [tuning.joint, tuning.anchored].map(|points| {

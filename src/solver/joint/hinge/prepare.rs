@@ -88,7 +88,7 @@ impl HingeSet {
         anchored.end_colour();
     }
 
-    /// Replaces impulses and angles by those of restored joints.
+    /// Loads the impulses and angles of the joints again.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.overflow.reload(joints);
         self.blocked.reload(joints);

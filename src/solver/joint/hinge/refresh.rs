@@ -10,8 +10,8 @@
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! Rounding `a e` to the 24 fraction bits of `e` first would multiply its error by `e'`, up to 2^7. The determinant can
-//! be computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
+//! If `a e` were rounded to the 24 fraction bits of `e` first, `e'` would multiply the rounding error by up to 2^7. The
+//! determinant can be computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
 
 use core::cell::Cell;
 
@@ -39,7 +39,7 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
-    /// The batch's own softness, or that of ordinary or anchored hinges.
+    /// The softness of the batch itself if it has one, otherwise that of ordinary or anchored hinges.
     #[inline(always)]
     pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
         match batch.is_tuned {

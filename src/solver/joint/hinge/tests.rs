@@ -1,4 +1,5 @@
-//! Batches of hinges give the same bits on every backend as single hinges, and nearly those of the scalar point block.
+//! Batches of hinges give the same bits on every backend as single hinges, and nearly the same numbers as the scalar
+//! point block.
 
 use std::vec;
 use std::vec::Vec;

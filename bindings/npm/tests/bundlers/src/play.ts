@@ -1,6 +1,6 @@
 import { World, box, init } from "lockstep2d";
 
-/** Hash of the falling box of the README after two seconds. */
+/** Height and hash of the falling box of the README after two seconds. */
 export async function play(): Promise<string> {
     await init();
     const world = new World({ gravity: [0, -10] });

@@ -1,4 +1,4 @@
-// Compiled, not run.
+// A test of the types: this file is compiled, but not run.
 import {
     type BodyId, Commands, type JointId, type Lockstep2dError, Match, MatchDriver, type MatchGame, type MoverState, Recorder,
     Recording, Relay, Replay, ReplayDriver, type ShapeId, type Snapshot, World, box, decodeNativeState, degrees, encodeNativeState,

@@ -90,13 +90,13 @@ struct Camera<'a, G: Game> {
     view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
-    /// Window of all frames. Not used if the game or the arguments set one.
+    /// Window of all frames. Not used if the game or the arguments set a window.
     window: Option<Aabb>,
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// Determines the size of all frames. Their aspect ratio is that of the game's view, unless the arguments set both
-    /// sides or a side would be outside of 64 to 16384 pixels.
+    /// Determines the size of all frames. The frames have the aspect ratio of the game's view. They differ from it if
+    /// the arguments set both width and height, or if a side would be outside of 64 to 16384 pixels.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,

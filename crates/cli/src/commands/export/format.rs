@@ -41,7 +41,8 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// The format that an option selects. Without such an option, it follows from the extension of the output file.
+    /// The format that an option selects. Without such an option, the extension of the output file determines the
+    /// format.
     pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
         let Formats { svg, png, gif, apng, json, plot } = *self;
         let asked = [

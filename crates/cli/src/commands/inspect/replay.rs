@@ -232,7 +232,8 @@ fn setup<G: Game>(rules: (&str, u32), bytes: &[u8]) -> Setup {
     if rules != (G::RULES.name, G::RULES.version) {
         return Setup::Unknown;
     }
-    // Another version of the engine may encode setups differently.
+    // Bytes that another version of the engine has encoded may decode to a wrong setup. Such a setup is recognised,
+    // because it encodes to other bytes.
     let decoded = codec::decode::<G::Setup>(bytes).ok().filter(|setup| codec::encode(setup) == bytes);
     decoded.and_then(|setup| fields(&setup).ok()).map_or(Setup::Unknown, Setup::Fields)
 }

@@ -1,4 +1,4 @@
-//! [`Cache`]: a folder of reports, so that a file with a known verdict is not played again.
+//! [`Cache`]: a folder of reports, so that a file with a cached verdict is not played again.
 
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -20,7 +20,7 @@ const VERSION: u32 = 2;
 /// Maximum size of an entry in bytes. An entry with 256 claims is smaller.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
 
-/// A folder with a file for each report, named by a hash of everything that the report depends on.
+/// A folder with a file for each report. The name of the file is a hash of everything that the report depends on.
 ///
 /// Processes may share the folder, also on several machines. An entry appears complete or not at all, and all its
 /// writers write the same bytes. A damaged entry counts as absent.

@@ -92,7 +92,7 @@ impl<G: Game> Judge<G> {
     }
 
     /// Stops the verification of all files before their next tick. This includes files that are passed later. A stopped
-    /// file gets no verdict. A file that cannot be opened still gets one.
+    /// file gets no verdict. A file that cannot be opened still gets a verdict.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
@@ -105,7 +105,7 @@ impl<G: Game> Judge<G> {
 
     /// Hash of everything that the verdict on a file depends on, as 64 hexadecimal digits. `blake3` is the BLAKE3
     /// digest of the file. The hash also covers the rules, the limits and versions. `verify --cache` names its entries
-    /// by it.
+    /// by this hash.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

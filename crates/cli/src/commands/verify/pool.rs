@@ -32,8 +32,7 @@ pub(super) trait Sink<R> {
     /// Called repeatedly, also while no result arrives. If it returns [`Pause::End`], the run ends.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
-    /// Called when [`Pause::End`] has ended the run, after the results that were still held. Tasks may still be
-    /// running.
+    /// Called when [`Pause::End`] has ended the run and all waiting results were shown. Tasks may still be running.
     fn end(&mut self);
 }
 
@@ -133,7 +132,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
                 Ok((number, result)) => {
                     self.waiting.insert(number, result);
                 }
-                // A worker ends early only because of a bug. The result of its task would never arrive.
+                // A thread ends early only because of a bug. The result of its task will never arrive, so the run ends.
                 Err(_) if !is_begun && is_any_gone() => return Ok(Pause::Continue),
                 Err(_) => {}
             }
@@ -274,7 +273,7 @@ mod tests {
 
     #[test]
     fn results_that_were_held_are_shown_at_the_end() {
-        // The first task runs until it is stopped: all later results are held.
+        // The first task runs until it is stopped, so all later results wait for its result.
         let stop = AtomicBool::new(false);
         let done = AtomicU64::new(0);
         struct EndWhenHeld<'a>(Shown, &'a AtomicU64);

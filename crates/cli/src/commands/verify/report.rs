@@ -40,7 +40,8 @@ impl Digests {
         Self::of_part(bytes, limits, blake3::hash(bytes))
     }
 
-    /// As [`Digests::of`], for a file of which `bytes` may be only the beginning. `blake3` is its digest.
+    /// As [`Digests::of`], for a file of which `bytes` may be only the beginning. `blake3` is the digest of the whole
+    /// file.
     pub(super) fn of_part(bytes: &[u8], limits: &Limits, blake3: blake3::Hash) -> Self {
         Digests { blake3, game: GameDigest::of_any(bytes, limits).ok() }
     }
@@ -50,7 +51,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file requires. If the format is unknown, only `format` is known.
+/// The versions that a file requires. If this program cannot read the format of the file, only `format` is set.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,

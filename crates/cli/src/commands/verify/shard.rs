@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// One of `count` parts, numbered from 1.
 ///
 /// The part of a file depends only on a hash of its path below the argument. Processes may list a changing folder at
-/// different times. They still take no file twice, and skip no file that all of them find. A file keeps its part when
+/// different times. Even then, exactly one process takes each file that all of them find. A file keeps its part when
 /// other files are added. The parts differ in size: with about 1000 files per part, the standard deviation is about 30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {

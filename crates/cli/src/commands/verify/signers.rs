@@ -73,7 +73,7 @@ impl Signers {
             Err(error @ (CommandError::Line { .. } | CommandError::NoText { .. })) => {
                 return Ok(Signed::malformed(&error));
             }
-            // The line of the result names the replay.
+            // The result line names the replay, so the error names the signature file.
             Err(CommandError::Read { error, .. }) => {
                 let why = format!("{}: {error}", beside.display());
                 return Err(CommandError::read(replay)(io::Error::new(error.kind(), why)));

@@ -21,7 +21,7 @@ pub(super) struct Tasks<'a> {
 struct FolderTasks<'a> {
     path: &'a Path,
     walk: Walk,
-    /// Whether any file was found, also one of another part.
+    /// Whether any file was found, in this shard or another one.
     is_any: bool,
 }
 

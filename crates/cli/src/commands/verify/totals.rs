@@ -16,7 +16,8 @@ pub(super) struct Totals {
     undecided: u64,
     unsigned: u64,
     cached: u64,
-    /// Number of ticks of undecided files and of reports that were not cached.
+    /// Number of ticks that this run has played: those of undecided files, and of reports that did not come from the
+    /// cache.
     ticks: u64,
     pub(super) elapsed: Duration,
 }

@@ -37,7 +37,7 @@ pub(super) struct Work {
     named_at: AtomicU64,
 }
 
-/// A file at work. Dropping this value removes the file from the [`Watch`].
+/// A file that is being verified. Dropping this value removes the file from the [`Watch`].
 pub(super) struct AtWork<'a> {
     watch: &'a Watch,
     number: u64,
@@ -60,7 +60,7 @@ impl Watch {
         AtWork { watch: self, number, work }
     }
 
-    /// Files in the order in which they began.
+    /// The files that are being verified, in the order in which they were begun.
     pub(super) fn at_work(&self) -> Vec<Arc<Work>> {
         self.works().values().map(Arc::clone).collect()
     }

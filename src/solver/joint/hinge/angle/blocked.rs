@@ -1,4 +1,4 @@
-//! Rows on the angle of a hinge in a block (`joint/block`), which computes their impulses.
+//! Rows on the angle of a hinge in a block. The block (`joint/block`) computes their impulses.
 
 use super::super::super::super::context::Pass;
 use super::super::super::super::limits::Faults;

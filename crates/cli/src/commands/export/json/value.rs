@@ -25,7 +25,7 @@ fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, Error> {
     })
 }
 
-/// A value, or the content of an enum variant under its name.
+/// The value. The content of an enum variant becomes an object with the name of the variant as its key.
 fn named(variant: Option<&str>, value: Value) -> Value {
     match variant {
         Some(name) => Map::from_iter([(name.into(), value)]).into(),

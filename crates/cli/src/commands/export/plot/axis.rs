@@ -11,8 +11,8 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// Size and name of the largest unit that is not above the absolute value. If there is none, those of the smallest
-    /// unit. An energy of 0 is in J.
+    /// Size and name of the largest unit that does not exceed the absolute value, or of the smallest unit if every unit
+    /// exceeds it. An energy of 0 is in J.
     pub(super) fn fitting(self, value: f64) -> (f64, &'static str) {
         let units: &[(f64, &str)] = match self {
             Unit::Energy => &[(0.001, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ"), (1e9, "GJ")],
@@ -28,9 +28,9 @@ impl Unit {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) step: f64,
-    /// The first number, in steps from 0.
+    /// The first number, as a multiple of `step`.
     first: i64,
-    /// The last number, in steps from 0.
+    /// The last number, as a multiple of `step`.
     last: i64,
     digits: usize,
 }
