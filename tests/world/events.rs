@@ -1,6 +1,6 @@
 //! Hit, contact and move events, in the documented order.
 
-use lockstep2d::body::{Body, BodyDef, EventSwitches, ShapeDef};
+use lockstep2d::body::{Body, BodyDef, Continuous, EventSwitches, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::Backend;
@@ -159,6 +159,21 @@ fn moves_are_told_in_slot_order_of_what_moved() {
     assert_eq!(world.events().moved[1].body, still);
     assert_eq!(world.events().moved[1].position, Vec2::new(fx!(5.1), fx!(9)));
     assert!(world.events().moved.iter().all(|event| event.body != floor));
+}
+
+/// A bar that turns by 90 degrees in a tick meets a puck that rests beyond the speculative distance, and carries it.
+#[test]
+fn a_body_that_a_turning_bar_carries_has_moved() {
+    let mut world = weightless();
+    let bar = BodyDef::kinematic().angular_velocity(fx!(95));
+    let bar = spawn(&mut world, bar, rectangle(fx!(3), fx!(0.05)));
+    let puck = BodyDef::dynamic().position((fx!(0), fx!(2))).continuous(Continuous::Kinematic);
+    let puck = spawn(&mut world, puck, ball(fx!(0.1)));
+    run(&mut world, 1);
+    let position = world.body(puck).expect("there").position();
+    assert!(position.x < fx!(-0.1), "the bar should carry the puck: {position:?}");
+    let told: Vec<_> = world.events().moved.iter().map(|event| event.body).collect();
+    assert_eq!(told, [bar, puck]);
 }
 
 #[test]

@@ -36,7 +36,9 @@ pub struct JointDef {
     pub enabled: bool,
     /// The motion that the joint allows.
     pub kind: JointKind,
-    /// Stiffness and damping of what the joint holds rigidly and of its limits.
+    /// Stiffness of what the joint holds rigidly and of its limits. A load that gives its body the acceleration `g`
+    /// stretches the joint by `g / w^2`, with `w` in rad/s. The joint approaches this length without vibration, with the
+    /// time constant `1 / (h w^2)`, where `h` is the sub-step in seconds. For suspensions use the springs of the joints.
     ///
     /// `None` uses the values in [`SolverSettings`](crate::solver::SolverSettings). The frequency is limited to a
     /// quarter of the sub-step rate.
@@ -118,8 +120,9 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// Each tick compares the threshold with the load in its last sub-step. In a joint's first tick, the solver has no
-/// impulses for the warm start, and may overestimate the load by a third.
+/// Each tick compares the threshold with the load in its last sub-step. A shock that ends in an earlier sub-step is
+/// missed: to break joints by impacts, use [`HitEvent::impulse`](crate::world::HitEvent). In a joint's first
+/// tick, the solver has no impulses for the warm start, and may overestimate the load by a third.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

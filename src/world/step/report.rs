@@ -1,4 +1,3 @@
-use crate::math::Vec2;
 use crate::world::cache::Scratch;
 use crate::world::events::MoveEvent;
 use crate::world::state::State;
@@ -6,11 +5,12 @@ use crate::world::stats::StepStats;
 
 /// Lists the moved bodies in slot order.
 pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
-    let Scratch { awake, solver, results, .. } = scratch;
-    for &slot in awake.bodies() {
+    let Scratch { awake, sweeps, results, .. } = scratch;
+    for (&slot, &start) in awake.bodies().iter().zip(&sweeps.starts) {
         let body = state.bodies.at(slot);
-        let (fell_asleep, solved) = (body.is_asleep(), solver.body(slot));
-        if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
+        let fell_asleep = body.is_asleep();
+        // A kinematic body may carry a body that the solver has not moved.
+        if fell_asleep || body.pose() != start {
             let (position, angle) = (body.position(), body.angle());
             let body = state.bodies.handle_at(slot);
             results.events.moved.push(MoveEvent { body, position, angle, fell_asleep });

@@ -86,8 +86,8 @@ impl World {
         enabled.filter_map(|(id, _)| self.joint_error(id)).fold(Fx::ZERO, Fx::max)
     }
 
-    /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.
-    /// 0 while the joint is disabled or neither body has mass.
+    /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor,
+    /// computed with the present masses and poses. 0 while the joint is disabled or neither body has mass.
     #[doc(alias = "reaction force")]
     #[must_use]
     pub fn joint_force(&self, id: JointId) -> Option<(Vec2<Fx>, Fx)> {
