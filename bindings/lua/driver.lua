@@ -220,4 +220,68 @@ for index, event in pairs(desyncs) do
 end
 assert(desyncs[1] or desyncs[2], "the states differ")
 
-print("driver: equal states in spite of garbage collections, the chosen key, errors, and fields of events")
+-- While a player requests a pause, all wait and keep their seats. Afterwards play does not catch up.
+both, deliver = connect(Game.new, { guess = 6 })
+local seen = {}
+local function run(from, to, read)
+    for step = from, to do
+        deliver(step, 3)
+        for index, peer in ipairs(both) do
+            for _, event in ipairs(peer:update(step * INTERVAL / 1000, read or zero)) do
+                assert(event.kind ~= ls.EVENT_UNSEATED and event.kind ~= ls.EVENT_DESYNC, "event " .. event.kind)
+                if event.kind == ls.EVENT_PAUSE then
+                    seen[#seen + 1] = index .. " " .. event.value
+                end
+            end
+        end
+    end
+end
+run(0, 500)
+both[1]:pause(true)
+run(501, 550)
+assert(both[1]:is_paused() and both[2]:is_paused())
+local ticks = { both[1].tick, both[2].tick }
+assert(ticks[1] > 60)
+-- Three seconds are more than the patience.
+run(551, 1300, function() error("no inputs are read during a pause") end)
+both[2]:pause(true)
+run(1301, 1350)
+both[1]:pause(false)
+run(1351, 1500)
+assert(both[1]:is_paused() and both[2]:is_paused(), "the other player has not ended the pause")
+assert(both[1].tick == ticks[1] and both[2].tick == ticks[2])
+both[2]:pause(false)
+run(1501, 1750)
+assert(not both[1]:is_paused() and not both[2]:is_paused())
+for index, peer in ipairs(both) do
+    local ticks_since = peer.tick - ticks[index]
+    assert(ticks_since > 30 and ticks_since < 75, ticks_since .. " ticks in a second")
+    assert(peer:status() == ls.MATCH_PLAYING)
+end
+assert(table.concat(seen, ", ") == "2 1, 1 1, 2 0, 1 0", table.concat(seen, ", "))
+
+-- A wrong time raises an error, and the match goes on. The time of a frame may be a little less than an earlier time.
+for _, wrong in ipairs({ 0 / 0, -1, math.huge, "7", 3 }) do
+    for _, name in ipairs({ "update", "receive" }) do
+        local done, why = pcall(both[1][name], both[1], wrong, name == "update" and zero or "2", "packet")
+        assert(not done and why:match("the time is"), tostring(why))
+    end
+end
+local tick = both[1].tick
+both[1]:update(1740 * INTERVAL / 1000, zero)
+run(1751, 2000)
+assert(both[1].tick > tick + 30, "tick " .. both[1].tick)
+
+-- A closed driver frees its saves and its match.
+local objects = tonumber(ls.object_count())
+local one = { start_with = 1 }
+local closed = Driver.new({ seats = Game.SEATS, offer = "", settings = one, game = Game.new(), send = print })
+for step = 0, 200 do
+    closed:update(step * INTERVAL / 1000, zero)
+end
+closed:close()
+closed:close()
+assert(tonumber(ls.object_count()) == objects + 1, "only the world is left")
+raises("the driver is closed", closed, 201, zero)
+
+print("driver: equal states, the chosen key, errors, fields of events, pauses and wrong times")

@@ -45,6 +45,18 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
+-- For each function with arguments of type `ls2d_fx`, their positions.
+local fx_positions = {}
+for name, parameters in header:gmatch("\n[%w_]+ (ls2d_[%w_]+)%(([^()]*)%);") do
+    local position, found = 0, {}
+    for parameter in parameters:gmatch("[^,]+") do
+        position = position + 1
+        if parameter:match("^%s*ls2d_fx [%w_]+$") then
+            found[#found + 1] = position
+        end
+    end
+    fx_positions[name] = found[1] and found
+end
 -- Removes comments and directives, because `ffi.cdef` has no preprocessor.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
@@ -56,8 +68,24 @@ local function last_error()
     return ffi.string(text, math.min(256, tonumber(length[0])))
 end
 
+--- Makes a function refuse Lua numbers as arguments of type `ls2d_fx`, because LuaJIT would convert them to raw
+--- integers. 0 is 0 in both.
+local function refuse_numbers(name, raw)
+    local positions = fx_positions[name]
+    return not positions and raw or function(...)
+        for _, position in ipairs(positions) do
+            local given = select(position, ...)
+            if type(given) == "number" and given ~= 0 then
+                local text = "%s: argument %d is the Lua number %s: pass ls.fx(...)"
+                error(text:format(name, position, given), 3)
+            end
+        end
+        return raw(...)
+    end
+end
+
 local function wrap(name)
-    local raw = C[name]
+    local raw = refuse_numbers(name, C[name])
     if not returns_status[name] then
         return raw
     end
@@ -116,14 +144,19 @@ function ls.number(fx)
     return tonumber(fx) / 4294967296
 end
 
---- The contents of a bytes object as a string. Frees the object.
-function ls.take_bytes(handle)
+local function copied(handle)
     local size = ffi.new("size_t[1]")
     ls.bytes_size(handle, size)
     local buffer = ffi.new("uint8_t[?]", math.max(1, tonumber(size[0])))
     ls.bytes_copy(handle, buffer, size[0])
-    ls.free(handle)
     return ffi.string(buffer, size[0])
+end
+
+--- The contents of a bytes object as a string. Frees the object, also if there is no memory for the string.
+function ls.take_bytes(handle)
+    local done, result = pcall(copied, handle)
+    C.ls2d_free(handle)
+    return done and result or error(result, 2)
 end
 
 --- A hash as 32 hexadecimal digits.

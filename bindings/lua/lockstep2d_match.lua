@@ -16,6 +16,8 @@ local Driver = {}
 Driver.__index = Driver
 
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
+-- Largest step back of the time in seconds that is no error.
+local BACK_MAX = 1
 
 --- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
 --- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` is a string of 28
@@ -56,6 +58,12 @@ function Driver.new(options)
         saves = {},
         events = {},
         unissued = {},
+        latest = 0,
+        -- Whether this peer requests a pause, and the other peers that request one.
+        pauses = false,
+        pausing = {},
+        -- Whether the inputs of all ticks are final.
+        finished = false,
         size = ffi.new("size_t[2]"),
         capacity = tonumber(config.seats * config.input_bytes),
         inputs = ffi.new("uint8_t[?]", config.seats * config.input_bytes),
@@ -69,8 +77,48 @@ function Driver.new(options)
     return self
 end
 
---- Processes a packet that arrived from an address. `now` is in seconds.
+--- Requests a pause, or withdraws the request. While any player requests a pause, updates play no ticks and do not call
+--- `read`; the program has to continue to call `update`. The other peers get the event `EVENT_PAUSE`.
+function Driver:pause(paused)
+    self.pauses = paused and true or false
+    -- A peer that joins passes its request when the state arrives.
+    if self:status() ~= ls.MATCH_CONNECTING then
+        ls.match_pause(self.match, self.pauses and 1 or 0)
+    end
+end
+
+--- Whether this peer or another player requests a pause.
+function Driver:is_paused()
+    -- When all inputs are final, nobody waits for a player that quits during a pause.
+    return not self.finished and (self.pauses or next(self.pausing) ~= nil)
+end
+
+--- Frees the saved states and the match. Every later use of the driver, except `close`, is an error.
+function Driver:close()
+    if self.match ~= 0 then
+        self:forget(function() return true end)
+        ls.free(self.match)
+        self.match = 0
+    end
+end
+
+-- Checks a time before it reaches the match, whose clock cannot be put back.
+function Driver:check(now)
+    if self.match == 0 then
+        error("the driver is closed", 3)
+    end
+    if type(now) ~= "number" or not (now >= 0 and now < 2 ^ 53 / 1e6) then
+        error("the time is a number of seconds from 0, and not " .. tostring(now), 3)
+    end
+    if now < self.latest - BACK_MAX then
+        error(("the time is %g s, and was %g s before: it must not decrease"):format(now, self.latest), 3)
+    end
+    self.latest = math.max(self.latest, now)
+end
+
+--- Processes a packet that arrived from an address. `now` is in seconds, and must not decrease.
 function Driver:receive(now, from, packet)
+    self:check(now)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
@@ -81,10 +129,12 @@ end
 ---
 --- If `read` raises an error or returns inputs of a wrong length, the update first sends its packets and then raises
 --- the error. The next update continues the match, and returns the events of both updates. After any other error, such
---- as an error of the game, every further update raises this error again.
+--- as an error of the game, every further update raises this error again. A time that is no number, or is more than a
+--- second less than an earlier time, raises an error and changes nothing.
 function Driver:update(now, read)
     local failure = self.failure
     if not failure then
+        self:check(now)
         local done, result = pcall(self.run, self, now, read)
         if done and not result then
             local events = self.events
@@ -106,6 +156,10 @@ function Driver:run(now, read)
         end
         -- Copies the hashes, because a field that is a struct is a reference into `self.event`.
         event.ours, event.theirs = ffi.new("ls2d_hash", self.event.ours), ffi.new("ls2d_hash", self.event.theirs)
+        self.finished = self.finished or event.kind == ls.EVENT_STATUS and event.value == ls.MATCH_FINISHED
+        if event.kind == ls.EVENT_PAUSE then
+            self.pausing[event.peer] = event.value == 1 or nil
+        end
         if event.kind == ls.EVENT_STATE then
             self:resume(event.tick, ls.take_bytes(event.value))
         end
@@ -129,7 +183,7 @@ end
 -- Plays the ticks that are due. Returns an error that concerns the inputs instead of raising it: no inputs were issued,
 -- so the match can continue with the next inputs.
 function Driver:play(now, read)
-    while self:is_due(now) do
+    while not self:is_paused() and self:is_due(now) do
         local seats = self:seat_count()
         local issued, before = false, self.tick
         local done, why = pcall(function()
@@ -205,6 +259,9 @@ function Driver:resume(tick, state)
     self.tick = tick
     self:forget(function() return true end)
     self:keep(tick)
+    -- The requests of a match that this peer took part in before do not count in this one.
+    self.pausing, self.finished = {}, false
+    ls.match_pause(self.match, self.pauses and 1 or 0)
 end
 
 --- The newest tick up to `tick` whose state is saved, or nil.

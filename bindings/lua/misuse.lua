@@ -22,9 +22,23 @@ fails("a wrong size", "status " .. ls.SIZE, function()
     def.size = 1
     ls.spawn(world, def, nil, 0, nil)
 end)
+fails("a Lua number for a fixed-point number", "argument 3 is the Lua number %-10", ls.set_gravity, world, 0, -10)
+fails("a Lua number for a sine", "argument 1 is the Lua number 0.5", ls.fx_add, 0.5, ls.fx(1))
+assert(ls.set_gravity(world, 0, ls.fx(-10)) and ls.fx_add(ls.fx(1), 0) == ls.fx(1), "0 is 0 in both")
 ls.free(world)
 fails("a freed world", "status " .. ls.HANDLE, ls.world_step, world)
 assert(tonumber(ls.object_count()) == 0, "nothing is leaked")
+-- Bytes that do not fit into memory are freed.
+local ffi = require("ffi")
+ls.bytes_new("abc", 3, out)
+local new = ffi.new
+ffi.new = function(type, ...)
+    assert(type ~= "uint8_t[?]", "not enough memory")
+    return new(type, ...)
+end
+fails("a copy without memory", "not enough memory", ls.take_bytes, out[0])
+ffi.new = new
+assert(tonumber(ls.object_count()) == 0, "the bytes are leaked")
 assert(ls.fx("0.25") == ls.fx(1) / 4 and ls.number(ls.fx("-1.5")) == -1.5)
 assert(ls.cast_ray ~= nil and ls.NO_ID == 0xffffffffffffffffULL)
 print("misuse: every mistake is an error")

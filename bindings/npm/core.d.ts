@@ -5,7 +5,7 @@ export {
     objectCount, polygon, radians, rotate, segment, semantics, sin, sqrt, turns,
 } from "./index.js";
 export type {
-    AreaOptions, BodyId, BodyInfo, BodyOptions, BodyPose, BodySettings, BodyType, CastHit, ChainDef, ConfigInfo, ConfigOptions,
-    ContactEvent, Events, Filter, InitOptions, JointId, JointInfo, JointOptions, MassOptions, Mixing, Moved, MoverOptions,
-    MoverPlane, MoverState, Num, RayHit, Rotation, SensorEvent, ShapeDef, ShapeId, ShapeInfo, ShapeOptions, Spring, Vec, Vec2,
+    AreaOptions, BodyId, BodyInfo, BodyOptions, BodyPose, BodySettings, BodyType, Bytes, CastHit, ChainDef, ConfigInfo,
+    ConfigOptions, ContactEvent, Edits, Events, Filter, Handle, InitOptions, JointId, JointInfo, JointOptions, MassOptions, Mixing,
+    Moved, MoverOptions, MoverPlane, MoverState, Num, RayHit, Rotation, SensorEvent, ShapeDef, ShapeId, ShapeInfo, ShapeOptions, Spring, Vec, Vec2,
 } from "./index.js";

@@ -19,6 +19,8 @@ export interface Vec2 {
     x: Fx;
     y: Fx;
 }
+/** Bytes in a buffer of their own, which nothing else uses: from TypeScript 5.7 on, a `Uint8Array<ArrayBuffer>`. */
+export type Bytes = ReturnType<Uint8Array["slice"]>;
 declare const handleBrand: unique symbol;
 /** Handle of a body. It is valid until the body is despawned, or until a state from before its spawn is restored. After
  * such a rollback, another body may get the same handle, so a table of sprites should also compare `userData`. The
@@ -495,6 +497,9 @@ declare class Handle {
     [Symbol.dispose](): void;
 }
 
+// Types without values: the classes cannot be imported at run time.
+export type { Edits, Handle };
+
 /** A pose for `spawnEach`. */
 export interface BodyPose {
     /** Origin of the body in the world, in metres. */
@@ -583,7 +588,7 @@ export class Commands extends Edits {
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: readonly (readonly [BodyId, BodyId])[]): undefined;
     readonly length: number;
     clear(): void;
-    toBytes(): Uint8Array;
+    toBytes(): Bytes;
     /** Replaces the contents of the list by those of encoded bytes, which may come from any source. */
     fromBytes(bytes: Uint8Array): this;
 }
@@ -717,7 +722,7 @@ export class World extends Edits {
     constructor(options?: ConfigOptions & { smallest?: Num });
     /** Makes a world from bytes, which may come from any source. Wrong bytes throw `SNAPSHOT`. */
     static fromBytes(bytes: Uint8Array): World;
-    toBytes(): Uint8Array;
+    toBytes(): Bytes;
     clone(): World;
     /** Adds a body, and returns its handle. */
     spawn(options: BodyOptions): BodyId;
@@ -796,7 +801,8 @@ export class World extends Edits {
     /** For drawing, five floats for each enabled body: handle, x and y in metres, angle in radians, and 1 if the body
      * is awake, otherwise 0. If `target` is long enough, the floats are written to `target`, and the result is a view
      * of them. */
-    poses(target?: Float64Array): Float64Array;
+    poses(target?: ReturnType<Float64Array["slice"]>): ReturnType<Float64Array["slice"]>;
+    poses(target: Float64Array): Float64Array;
     /** The events of the last tick: after `step(120)`, those of the 120th tick. */
     events(): Events;
     /** The first shape that a ray from `origin` to `origin` plus `translation` meets, in metres. */
@@ -881,7 +887,7 @@ export interface Moved {
  * follow the character, and leave this body out by `except` of the filter. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** Encodes the state of a character, for saves and hashes. */
-export function encodeMoverState(state: MoverState): Uint8Array;
+export function encodeMoverState(state: MoverState): Bytes;
 export function decodeMoverState(bytes: Uint8Array): Moved["state"];
 
 /** Bounds on the cost of a replay. The defaults allow a day of play. With them, a malicious file can take hours to
@@ -959,14 +965,14 @@ export class Recording extends Handle {
     /** A copy of the world, to be disposed of by the caller. */
     world(): World;
     /** The bytes finished since the last call, to be appended to a file. */
-    take(): Uint8Array;
+    take(): Bytes;
     /** Ends the recording, and returns the remaining bytes. */
-    finish(): Uint8Array;
+    finish(): Bytes;
 }
 /** Inputs of a tick. */
 export interface TickInputs {
     /** Inputs of all players or seats, in order. */
-    inputs: Uint8Array;
+    inputs: Bytes;
     /** Bit for each empty seat, whose input is zeros. */
     absent: bigint;
 }
@@ -999,9 +1005,9 @@ export class Recorder extends Handle {
     /** Passes the hash of the state after the last recorded tick. */
     checkpoint(hash: string): void;
     /** The bytes finished since the last call, to be appended to a file. */
-    take(): Uint8Array;
+    take(): Bytes;
     /** Ends the replay with the hash of the last state, and returns the remaining bytes. */
-    finish(hash: string): Uint8Array;
+    finish(hash: string): Bytes;
 }
 /** A replay of a game with its own rules. */
 export class Replay extends Handle {
@@ -1015,7 +1021,7 @@ export class Replay extends Handle {
     readonly inputBytes: number;
     readonly ticks: number;
     /** Data from which the game makes its first state. */
-    readonly setup: Uint8Array;
+    readonly setup: Bytes;
     /** Results in the file, verified only if the verdict is `match`. */
     readonly claims: Map<string, bigint>;
     /** The inputs of the next tick; undefined at the end. */
@@ -1040,7 +1046,7 @@ export class Replay extends Handle {
 /** A game. `save` and `hash` have to cover its whole state. */
 export interface ReplayGame<Saved = unknown> {
     /** Advances by a tick, with the inputs of all seats, and a bit for each empty seat. */
-    step(inputs: Uint8Array, absent: bigint): void;
+    step(inputs: Bytes, absent: bigint): void;
     save(): Saved;
     /** Restores a copy. The driver may restore the same copy again later. */
     load(saved: Saved): void;
@@ -1093,9 +1099,11 @@ export interface MatchOptions {
     delayMin?: number;
     /** Largest delay in ticks, at most 60: 20 by default. */
     delayMax?: number;
-    /** Interval in ticks at which states are saved, from 1 to half of `history`: 8 by default. */
+    /** Interval in ticks at which states are saved, from 1 to half of `history`. The default is that of a native `Peer`:
+     * 1 if `guess` is more than 0, otherwise 6 or, with a given `checkInterval`, the largest of its divisors up to 8. */
     saveInterval?: number;
-    /** Interval in ticks at which states are compared: a multiple of `saveInterval`, 64 by default. */
+    /** Interval in ticks at which states are compared: a multiple of `saveInterval`. The default is that of a native
+     * `Peer`: the largest multiple up to 10, which is 6 in lockstep, or `saveInterval` if it is more than 10. */
     checkInterval?: number;
     /** Ticks that may be played beyond the last final tick, at least 16: 128 by default. */
     history?: number;
@@ -1177,7 +1185,7 @@ export interface MatchEvent {
     /** `offer`: the offers differ; `full`: too many peers are joining through this contact; `taken`: another peer has
      * this number; `notReady`: the contact is not in a match yet, and the request is repeated. */
     reason?: "offer" | "full" | "taken" | "notReady";
-    state?: Uint8Array;
+    state?: Bytes;
 }
 /** A request to the game. Fulfil requests in order, before you call `advance` again:
  *
@@ -1191,7 +1199,7 @@ export interface MatchRequest {
     /** From 0. */
     tick: number;
     /** Empty except for `advance`. */
-    inputs: Uint8Array;
+    inputs: Bytes;
     /** Bit for each empty seat, whose input is zeros. */
     absent: bigint;
     /** Bit for each seat whose input is guessed. */
@@ -1223,7 +1231,7 @@ export class Match extends Handle {
     nextRequest(): MatchRequest | undefined;
     /** Passes the hash for a request `checksum`. */
     reportHash(tick: number, hash: string): void;
-    nextPacket(): { to: Uint8Array; packet: Uint8Array } | undefined;
+    nextPacket(): { to: Bytes; packet: Bytes } | undefined;
     nextEvent(): MatchEvent | undefined;
     /** Whether `offerState` is needed for a peer that joins. */
     readonly wantsState: boolean;
@@ -1246,7 +1254,9 @@ export class Match extends Handle {
      * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
      * back: decide by a state of a confirmed tick (`ticks().confirmed`). */
     endAt(ticks: number): void;
-    /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on. */
+    /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on: during a
+     * pause, the program of each peer calls `update` and does not call `advance`. With a driver, use
+     * `MatchDriver.pause`. */
     pause(paused: boolean): void;
     /** Votes for going on without a missing peer. */
     goOnWithout(peer: number): void;
@@ -1260,14 +1270,14 @@ export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
     /** Replaces the state by an encoded state, which may come from any source. Decode the bytes before you free the old
      * state, because the old state has to stay if the bytes are not valid. */
-    decode(bytes: Uint8Array): void;
+    decode(bytes: Bytes): void;
 }
 /** Plays a game in a match: saves, restores and advances it as the match requests. */
 export class MatchDriver<Saved = unknown> {
     #private;
     /** The game has to be in the state before the first tick. `send` sends a packet to an address. If it throws, the
      * packet is lost, and the match goes on. */
-    constructor(match: Match, game: MatchGame<Saved>, send: (to: Uint8Array, packet: Uint8Array) => void);
+    constructor(match: Match, game: MatchGame<Saved>, send: (to: Bytes, packet: Bytes) => void);
     readonly match: Match;
     /** Number of ticks played, including those with guessed inputs. */
     readonly tick: number;
@@ -1275,13 +1285,25 @@ export class MatchDriver<Saved = unknown> {
     readonly ended: boolean;
     /** The last error that `send` has thrown. */
     readonly sendError: unknown;
+    /** Whether this peer or another player requests a pause. False once the match is `finished`. */
+    readonly isPaused: boolean;
+    /** Requests a pause, or withdraws the request. The other peers get the event `pause`. While any player requests a
+     * pause, `update` plays no ticks and does not call `readInputs`; continue to call it, so that no player loses its
+     * seat. A player that leaves withdraws its request. */
+    pause(paused: boolean): void;
+    /** Frees the saved states, and makes the driver unusable. The match remains. */
+    dispose(): void;
+    /** Calls `dispose` at the end of a block. */
+    [Symbol.dispose](): void;
+    /** Passes a packet from an address to the match. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
      * returns the inputs of your own seats in order. Each result counts for one tick, so clear recorded key presses in
      * it. While the input delay grows, an update calls `readInputs` several times. Returns the events. For an event
      * `state`, the game has already decoded the state. After an error of the game, every further call throws that
      * error. An error of `readInputs` is thrown once. The next call continues the match, and also returns the events of
-     * the call that threw the error. */
+     * the call that threw the error. A time that is no number, or is more than a second less than an earlier time,
+     * throws `VALUE` and changes nothing. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
@@ -1300,9 +1322,9 @@ export function nativeOffer(options: {
     inputBytes?: number;
     /** Milliseconds, as in `MatchOptions`. */
     patience?: number;
-}): Uint8Array;
+}): Bytes;
 /** The state of a native game whose `Save` is the `Snapshot` of its world, for `MatchGame.encode`. */
-export function encodeNativeState(world: World): Uint8Array;
+export function encodeNativeState(world: World): Bytes;
 /** The world from a state of `encodeNativeState` or of a native game, for `MatchGame.decode`. The bytes may come from
  * any source. */
 export function decodeNativeState(bytes: Uint8Array): World;
@@ -1318,18 +1340,18 @@ export class Relay {
      * seconds, or if the page cannot open the URL, such as `ws://` in a page loaded over https. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array | undefined; WebSocket?: unknown }): Promise<Relay>;
     /** Address of this member. */
-    readonly own: Uint8Array;
+    readonly own: Bytes;
     /** Addresses of the other members, in the order in which they entered. */
-    readonly others: Uint8Array[];
+    readonly others: Bytes[];
     /** Whether there is a connection. `Relay` opens a lost connection again, unless `isClosed`. */
     readonly isOpen: boolean;
     /** Whether the connection has ended for ever: after `close`, or because the same `secret` has entered the room
      * again, for example in a duplicate of the tab. */
     readonly isClosed: boolean;
     /** Called with the sender and the bytes of each packet. */
-    onPacket: (from: Uint8Array, packet: Uint8Array) => void;
+    onPacket: (from: Bytes, packet: Bytes) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */
-    onMembers: (others: Uint8Array[]) => void;
+    onMembers: (others: Bytes[]) => void;
     /** Sends a packet to a member. It is dropped if there is no connection, if too many bytes wait to be sent, or if
      * `to` does not have the 8 bytes of an address. */
     send(to: Uint8Array, packet: Uint8Array): void;

@@ -7,14 +7,20 @@ const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Members in different networks need a STUN server: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
 const CONFIG = {};
+// Most candidates of a member that wait for a description.
+const CANDIDATES_MAX = 64;
 const CHANNEL = { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 };
 
 const nameOf = (address) => address.join(".");
+// While the state of a connection is "disconnected", packets do not arrive, although the channel is still open.
+const isUsable = ({ connection, channel }) => channel.readyState === "open" && connection.connectionState === "connected";
 const isSignal = (bytes) => bytes.length > SIGNAL.length && SIGNAL.every((byte, index) => bytes[index] === byte);
 
 export class Direct {
     #relay;
     #links = new Map();
+    // For each member, candidates that have arrived before a description.
+    #early = new Map();
     enabled = false;
     onPacket = () => {};
 
@@ -22,7 +28,7 @@ export class Direct {
         this.#relay = relay;
         relay.onPacket = (from, bytes) => {
             if (isSignal(bytes)) {
-                this.#signalled(from, JSON.parse(DECODER.decode(bytes.subarray(SIGNAL.length)))).catch(() => this.#drop(from));
+                this.#signalled(from, bytes.subarray(SIGNAL.length)).catch(() => this.#drop(from));
             } else {
                 this.onPacket(from, bytes);
             }
@@ -30,9 +36,9 @@ export class Direct {
         relay.onMembers = () => this.#connect();
     }
 
-    /** Number of members with an open channel. */
+    /** Number of members that are reached by a channel. */
     get count() {
-        return [...this.#links.values()].filter(({ channel }) => channel.readyState === "open").length;
+        return [...this.#links.values()].filter(isUsable).length;
     }
 
     enable() {
@@ -41,9 +47,9 @@ export class Direct {
     }
 
     send(to, packet) {
-        const channel = this.#links.get(nameOf(to))?.channel;
-        if (channel?.readyState === "open") {
-            channel.send(packet);
+        const link = this.#links.get(nameOf(to));
+        if (link && isUsable(link)) {
+            link.channel.send(packet);
         } else {
             this.#relay.send(to, packet);
         }
@@ -52,6 +58,7 @@ export class Direct {
     close() {
         [...this.#links.values()].forEach(({ connection }) => connection.close());
         this.#links.clear();
+        this.#early.clear();
     }
 
     // The member whose address comes first, as text, makes the offer. The other member requests the offer with a
@@ -59,6 +66,7 @@ export class Direct {
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
+        [...this.#early.keys()].filter((name) => !names.has(name)).forEach((name) => this.#early.delete(name));
         for (const address of this.enabled ? this.#relay.others : []) {
             if (this.#links.has(nameOf(address))) {
                 continue;
@@ -104,20 +112,36 @@ export class Direct {
         this.#relay.send(to, bytes);
     }
 
-    async #signalled(from, { wish, description, candidate }) {
+    async #signalled(from, bytes) {
+        const { wish, description, candidate } = JSON.parse(DECODER.decode(bytes));
         if (wish) {
             this.#links.has(nameOf(from)) || (await this.#call(from));
             return;
         }
-        const { connection } = this.#link(from);
         if (candidate) {
-            await connection.addIceCandidate(candidate);
+            await this.#reachable(from, candidate);
             return;
         }
+        const { connection } = this.#link(from);
         await connection.setRemoteDescription(description);
+        const early = this.#early.get(nameOf(from)) ?? [];
+        this.#early.delete(nameOf(from));
+        await Promise.all(early.map((each) => this.#reachable(from, each)));
         if (description.type === "offer") {
             await this.#call(from);
         }
+    }
+
+    // Adds a candidate to the connection that it belongs to, or keeps it until the connection has a description. A
+    // candidate that the connection refuses, such as one of an earlier connection, ends nothing.
+    async #reachable(from, candidate) {
+        const connection = this.#links.get(nameOf(from))?.connection;
+        if (connection?.remoteDescription) {
+            await connection.addIceCandidate(candidate).catch(() => {});
+            return;
+        }
+        const early = this.#early.get(nameOf(from)) ?? [];
+        this.#early.set(nameOf(from), [...early, candidate].slice(-CANDIDATES_MAX));
     }
 
     #drop(address) {

@@ -137,9 +137,11 @@ typedef uint32_t ls2d_handle;
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* Handle of a body of a world. The lowest 21 bits are the slot. The other bits are the generation, which counts
- * the earlier bodies in that slot. Handles of bodies are less than 2^53, so that a JavaScript number holds them
- * exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger. */
+/* Handle of a body of a world. It is valid until the body is despawned, or until a state from before its spawn is
+ * restored. After such a rollback, another body may get the same handle, so a table of sprites should also compare
+ * `user_data`. The lowest 21 bits are the slot. The other bits are the generation, which counts the earlier bodies
+ * in that slot: the first bodies have the handles 0, 1, 2 and so on. Handles of bodies are less than 2^53, so that
+ * a JavaScript number holds them exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger. */
 typedef uint64_t ls2d_body;
 /* Handle of a shape of a world, encoded like `ls2d_body`. */
 typedef uint64_t ls2d_shape;
@@ -962,9 +964,11 @@ typedef struct ls2d_match_config {
     uint32_t delay_min;
     /* Largest delay of inputs in ticks. */
     uint32_t delay_max;
-    /* Interval in ticks at which states are saved. */
+    /* Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1 with
+     * guessed inputs, otherwise 6 or, with a given `check_interval`, the largest of its divisors up to 8. */
     uint32_t save_interval;
-    /* Interval in ticks at which states are compared: a multiple of `save_interval`. */
+    /* Interval in ticks at which states are compared: a multiple of `save_interval`. 0, the default, stands for
+     * the interval of a Rust `Peer`: the largest multiple up to 10, or `save_interval` if it is more than 10. */
     uint32_t check_interval;
     /* Number of ticks that may be played beyond the last final tick. */
     uint32_t history;
@@ -1028,7 +1032,7 @@ uint32_t ls2d_api_version(void);
 uint32_t ls2d_semantics(void);
 
 /* Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
- * too short, the text is cut. `length` is the length of the whole text in bytes. */
+ * too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Every later use of its handle is an error. */
@@ -1208,7 +1212,9 @@ ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_f
 /* Sets the position of a body's origin in metres, and its angle. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle. */
+/* Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle.
+ * After this tick its velocity is 0. Other bodies are refused with `LS2D_WRONG_KIND`. `LS2D_SPEED` if the body
+ * cannot reach the pose in one tick at the world's `speed_max`: use `ls2d_set_transform` for such a distance. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
 /* Sets all settings of a body: damping, gravity scale, locks, continuous collision detection, sleep. The other
@@ -1436,7 +1442,7 @@ ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limi
 
 /* Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
  * t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
- * and the result is `LS2D_RECORD`. */
+ * and the result is `LS2D_RECORD`. Other failures write no verdict. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
 
 /* The current tick, and the number of ticks. Each pointer may be null. */
@@ -1484,7 +1490,7 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
 /* ---- Replays of games with rules of their own ---- */
 
 /* Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
- * verdict is written, the handle is 0, and the result is `LS2D_RECORD`. */
+ * verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no verdict. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
 /* Name of the rules as a bytes object, and numbers that describe the replay. All pointers except `rules` may be
@@ -1600,10 +1606,12 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 ls2d_status ls2d_match_leave(uint32_t handle);
 
 /* Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
- * majority has decided on the end, other peers can get seats. */
+ * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
+ * back: decide by a state of a confirmed tick (`ls2d_match_ticks`). */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on. */
+/* Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on:
+ * during a pause, the program of each peer calls `ls2d_match_update` and does not call `ls2d_match_advance`. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
 /* Votes for going on without a missing peer. */

@@ -187,6 +187,8 @@ pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
     let result = catch_unwind(AssertUnwindSafe(body));
     let status = match result {
         Ok(Ok(())) => Status::Ok,
+        // The text of the last failure stays, because a poll that returns nothing is no failure.
+        Ok(Err(Failure { status: Status::None, .. })) => Status::None,
         Ok(Err(failure)) => note(failure),
         Err(_) => note(Failure::new(Status::Internal, "an error in the library")),
     };

@@ -122,6 +122,23 @@ pub(crate) fn add<T: Kind>(value: T) -> Outcome<u32> {
     Ok(index | slot.generation << SLOT_BITS)
 }
 
+/// Adds the bytes that `take` removes from another object. Calls `take` only if there is a free handle, because the
+/// bytes would otherwise be lost.
+#[cfg(feature = "lockstep")]
+pub(crate) fn add_taken(take: impl FnOnce() -> Outcome<Vec<u8>>) -> Outcome<u32> {
+    let handle = add(Bytes(Vec::new()))?;
+    let filled = take().and_then(|taken| {
+        with(handle, |Bytes(bytes)| {
+            *bytes = taken;
+            Ok(handle)
+        })
+    });
+    if filled.is_err() {
+        free(handle)?;
+    }
+    filled
+}
+
 fn get(handle: u32) -> Outcome<Shared> {
     let (index, generation) = parts(handle);
     let table = table();

@@ -1,7 +1,8 @@
 // lockstep2d: deterministic 2D physics for the web.
 export * from "./common.js";
 export { Recorder, Recording, Replay, ReplayDriver, Timeline, verifyReplay } from "./replay.js";
-export { Match, MatchDriver } from "./match.js";
+export { Match } from "./match.js";
+export { MatchDriver } from "./driver.js";
 export { Relay } from "./relay.js";
 export { decodeNativeState, encodeNativeState, nativeOffer } from "./native.js";
 

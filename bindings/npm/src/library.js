@@ -294,14 +294,17 @@ export const copy = (at, size) => memory().slice(at, at + size);
 
 /** Reads and frees a bytes object. */
 export function takeBytes(handle) {
-    const at = scratch(16);
-    call("ls2d_bytes_size", handle, at);
-    const size = u32(at);
-    const to = scratch(16 + size);
-    call("ls2d_bytes_copy", handle, to + 16, size);
-    const taken = copy(to + 16, size);
-    call("ls2d_free", handle);
-    return taken;
+    try {
+        const at = scratch(16);
+        call("ls2d_bytes_size", handle, at);
+        const size = u32(at);
+        const to = scratch(16 + size);
+        call("ls2d_bytes_copy", handle, to + 16, size);
+        return copy(to + 16, size);
+    } finally {
+        // Also if there is no memory for a copy.
+        exports.ls2d_free(handle);
+    }
 }
 
 export const text = (data) => DECODER.decode(data);

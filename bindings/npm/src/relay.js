@@ -177,7 +177,18 @@ export class Relay {
             clearInterval(this.#watcher);
             return;
         }
-        this.#timer = setTimeout(() => this.#open(), this.#pause);
+        this.#retry();
+    }
+
+    // A WebSocket that cannot be made, for example without memory, counts as a failed connection.
+    #retry() {
+        this.#timer = setTimeout(() => {
+            try {
+                this.#open();
+            } catch {
+                this.#retry();
+            }
+        }, this.#pause);
         this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
     }
 

@@ -2,7 +2,7 @@
 import { byteArray, count, fail, instance, integer, long, object, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
 import { Commands } from "./edits.js";
-import { Handle, call, copy, disposable, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
+import { Handle, call, copy, disposable, failure, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
 import { nextRequest } from "./requests.js";
@@ -25,7 +25,11 @@ function openAt(name, bytes, limits) {
     const before = limit + sizeOf("limits");
     const at = give(bytes, before);
     const status = statusOf(name, at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
-    if (status !== STATUS.OK) {
+    // Other failures, such as EXHAUSTED, write no verdict.
+    if (status !== STATUS.OK && status !== STATUS.RECORD) {
+        throw failure(status);
+    }
+    if (status === STATUS.RECORD) {
         const found = verdictAt(at + verdict);
         throw Object.assign(new Lockstep2dError("RECORD", found.text), { verdict: found });
     }

@@ -34,20 +34,99 @@ test("a recording without the first ticks is broken", () => {
     assert.deepEqual([recording.broken, recording.ticks], [true, 0]);
 });
 
-test("a text in a data channel is no packet", () => {
-    const channel = {};
-    globalThis.RTCPeerConnection = class {
-        createDataChannel() {
-            return channel;
+/** A connection that refuses candidates without a description, and those that the test calls wrong. */
+class Connection {
+    static all = [];
+    connectionState = "new";
+    candidates = [];
+    channel = { readyState: "connecting", sent: [], send: (packet) => this.channel.sent.push([...packet]) };
+
+    constructor() {
+        Connection.all.push(this);
+    }
+    createDataChannel() {
+        return this.channel;
+    }
+    async setLocalDescription() {
+        this.localDescription = { type: this.remoteDescription ? "answer" : "offer" };
+    }
+    async setRemoteDescription(description) {
+        await undefined;
+        this.remoteDescription = description;
+    }
+    async addIceCandidate(candidate) {
+        if (!this.remoteDescription || candidate === "wrong") {
+            throw new DOMException("no description", "InvalidStateError");
         }
-        setLocalDescription() {}
-    };
-    const relay = { own: Uint8Array.of(1), others: [Uint8Array.of(2)], send() {} };
-    const direct = new Direct(relay);
+        this.candidates.push(candidate);
+    }
+    close() {
+        this.connectionState = "closed";
+    }
+}
+
+function direct() {
+    Connection.all = [];
+    globalThis.RTCPeerConnection = Connection;
+    const [own, other] = [Uint8Array.of(1), Uint8Array.of(2)];
+    const relay = { own, others: [other], sent: [], send: (to, packet) => relay.sent.push([...packet]) };
+    const made = new Direct(relay);
+    const signal = (message) => relay.onPacket(other, new TextEncoder().encode(`lockstep2d signal ${JSON.stringify(message)}`));
+    return { direct: made, relay, other, signal, settle: () => new Promise((resolve) => setTimeout(resolve, 5)) };
+}
+
+test("a text in a data channel is no packet", () => {
+    const { direct: made } = direct();
     const sizes = [];
-    direct.onPacket = (from, { length }) => sizes.push(length);
-    direct.enable();
+    made.onPacket = (from, { length }) => sizes.push(length);
+    made.enable();
+    const [{ channel }] = Connection.all;
     channel.onmessage({ data: "2000" });
     channel.onmessage({ data: Uint8Array.of(1, 2, 3).buffer });
     assert.deepEqual(sizes, [3]);
+});
+
+test("packets go through the relay while the connection has no path", async () => {
+    const { direct: made, relay, other, settle } = direct();
+    made.enable();
+    await settle();
+    const [connection] = Connection.all;
+    relay.sent = [];
+    connection.channel.readyState = "open";
+    ["connecting", "connected", "disconnected", "connected"].forEach((state, index) => {
+        connection.connectionState = state;
+        made.send(other, [index]);
+        assert.equal(made.count, state === "connected" ? 1 : 0);
+    });
+    assert.deepEqual([relay.sent, connection.channel.sent], [[[0], [2]], [[1], [3]]]);
+});
+
+test("candidates that arrive before the description are kept", async () => {
+    const { direct: made, signal, settle } = direct();
+    signal({ candidate: "first" });
+    signal({ candidate: "wrong" });
+    await settle();
+    signal({ description: { type: "offer" } });
+    signal({ candidate: "during" });
+    await settle();
+    signal({ candidate: "after" });
+    signal({ candidate: "wrong" });
+    await settle();
+    assert.equal(Connection.all.length, 1);
+    const [{ candidates, connectionState, localDescription }] = Connection.all;
+    assert.deepEqual([candidates.toSorted(), connectionState, localDescription.type], [["after", "during", "first"], "new", "answer"]);
+    made.close();
+});
+
+test("a signal that is no signal ends one link, without an error", async () => {
+    const { relay, signal, settle } = direct();
+    signal({ wish: true });
+    await settle();
+    const noise = new TextEncoder().encode("lockstep2d signal {");
+    relay.onPacket(Uint8Array.of(3), noise);
+    await settle();
+    assert.deepEqual(Connection.all.map(({ connectionState }) => connectionState), ["new"]);
+    relay.onPacket(Uint8Array.of(2), noise);
+    await settle();
+    assert.deepEqual(Connection.all.map(({ connectionState }) => connectionState), ["closed"]);
 });

@@ -302,3 +302,73 @@ test("only a finished match has ended, also once it is closed", () => {
     assert.deepEqual([host.match.status, host.driver.tick, host.driver.ended], ["closed", 300, true]);
     assert.deepEqual(spectators.map(({ driver, match }) => [match.status, driver.ended]), spectators.map(() => ["closed", false]));
 });
+
+test("while a player requests a pause, all wait and keep their seats", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 2 });
+    const guest = net.add({ contact: address(0) });
+    const both = [host, guest];
+    const ticks = () => both.map(({ driver }) => driver.tick);
+    const paused = () => both.map(({ driver }) => driver.isPaused);
+    net.run(2000);
+    host.driver.pause(true);
+    net.run(200);
+    assert.deepEqual(paused(), [true, true]);
+    const before = ticks();
+    guest.input = () => assert.fail("no inputs are read during a pause");
+    // Longer than the patience. Both players open their menus, and close them one after the other.
+    net.run(3000);
+    guest.driver.pause(true);
+    net.run(200);
+    host.driver.pause(false);
+    net.run(3000);
+    assert.deepEqual([paused(), ticks()], [[true, true], before]);
+    const late = net.add({ ownSeats: 0, contact: address(0) });
+    net.run(1000);
+    assert.deepEqual([late.match.status, late.driver.isPaused], ["watching", true]);
+    guest.input = undefined;
+    guest.driver.pause(false);
+    net.run(1000);
+    assert.deepEqual([paused(), both.map(({ match }) => match.status)], [[false, false], ["playing", "playing"]]);
+    ticks().forEach((tick, index) => {
+        const played = tick - before[index];
+        assert.ok(played > 30 && played < 75, `${played} ticks in a second: play does not catch up`);
+    });
+    assert.deepEqual(guest.events.filter(({ kind }) => kind === "pause").map(({ peer, value }) => [peer, value]), [[1, 1], [1, 0]]);
+    assert.ok(both.every(({ events }) => events.every(({ kind }) => kind !== "unseated" && kind !== "desync")));
+    // A player that leaves during its own pause withdraws its request.
+    guest.driver.pause(true);
+    net.run(200);
+    const { tick } = host.driver;
+    guest.match.leave();
+    net.run(4000);
+    assert.deepEqual([host.driver.isPaused, guest.match.status], [false, "closed"]);
+    assert.ok(host.driver.tick > tick + 60);
+});
+
+test("a pause that is requested while a peer joins begins when it plays", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 2 });
+    const guest = net.add({ contact: address(0) });
+    assert.equal(guest.match.status, "connecting");
+    guest.driver.pause(true);
+    assert.equal(guest.driver.isPaused, true);
+    net.run(2000);
+    assert.deepEqual([host.driver.isPaused, host.match.status, guest.driver.tick], [true, "playing", 0]);
+    guest.driver.pause(false);
+    net.run(1000);
+    assert.deepEqual([host.driver.isPaused, guest.driver.isPaused], [false, false]);
+    assert.ok(guest.driver.tick > 30);
+    assert.throws(() => guest.driver.pause(), { code: "VALUE" });
+});
+
+test("a pause in the last ticks does not keep a match from its end", () => {
+    const net = new Net();
+    const options = { guess: 0, delayMin: 20, delayMax: 30 };
+    const both = [net.add({ startWith: 2, ...options }), net.add({ contact: address(0), ...options })];
+    both[0].match.endAt(300);
+    while (both[0].driver.tick < 290) net.run(4);
+    both[0].driver.pause(true);
+    net.run(5000);
+    assert.deepEqual(both.map(({ driver }) => [driver.tick, driver.ended, driver.isPaused]), [[300, true, false], [300, true, false]]);
+});

@@ -14,6 +14,7 @@ class Socket {
     sent = [];
 
     constructor() {
+        Socket.check?.();
         Socket.all.push(this);
     }
 
@@ -101,6 +102,28 @@ test("a connection without an answer is opened again", async (t) => {
     relay.close();
     pass(60);
     assert.equal(Socket.all.length, 4);
+});
+
+test("a WebSocket that cannot be made is tried again", async (t) => {
+    const pass = clock(t);
+    const { relay, socket } = await enter();
+    let failures = 0;
+    Socket.check = () => {
+        if (failures < 3) {
+            failures++;
+            throw new DOMException("no memory", "OperationError");
+        }
+    };
+    t.after(() => (Socket.check = undefined));
+    socket.onclose({ code: 1006, reason: "" });
+    // The pauses before the attempts: 0.25, 0.5, 1 and 2 seconds.
+    pass(3);
+    assert.deepEqual([failures, Socket.all.length], [3, 1]);
+    pass(1);
+    assert.equal(Socket.all.length, 2);
+    Socket.all[1].enter();
+    assert.deepEqual([relay.isOpen, relay.isClosed], [true, false]);
+    relay.close();
 });
 
 test("a page that was suspended keeps its connection", async (t) => {

@@ -259,6 +259,8 @@ api! {
     }
 
     /// Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle.
+    /// After this tick its velocity is 0. Other bodies are refused with `LS2D_WRONG_KIND`. `LS2D_SPEED` if the body
+    /// cannot reach the pose in one tick at the world's `speed_max`: use `ls2d_set_transform` for such a distance.
     fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())

@@ -11,7 +11,7 @@ use crate::border::{In, Out};
 use crate::describe::api;
 use crate::numbers::RawHash;
 use crate::status::{Failure, Outcome, Status, value};
-use crate::table::{self, Bytes, with};
+use crate::table::{self, with};
 
 /// Rules (name, version), players, tick rate, bytes of an input, hash of the first state, the game's own setup.
 pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
@@ -185,8 +185,8 @@ api! {
     fn ls2d_recorder_take(recorder: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
-        let taken = with(recorder, |recorder: &mut HostRecorder| Ok(recorder.get()?.take_bytes()))?;
-        bytes.set(table::add(Bytes(taken))?)
+        let take = || with(recorder, |recorder: &mut HostRecorder| Ok(recorder.get()?.take_bytes()));
+        bytes.set(table::add_taken(take)?)
     }
 
     /// Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
@@ -204,11 +204,11 @@ api! {
         let mut bytes = bytes;
         bytes.check()?;
         let hash = hash.get()?.hash();
-        let rest = with(recorder, |recorder: &mut HostRecorder| {
+        let take = |recorder: &mut HostRecorder| {
             recorder.game.hash = hash;
             let taken = recorder.recorder.take().ok_or_else(finished)?;
             Ok(taken.finish(&recorder.game)?)
-        })?;
-        bytes.set(table::add(Bytes(rest))?)
+        };
+        bytes.set(table::add_taken(|| with(recorder, take))?)
     }
 }

@@ -204,7 +204,7 @@ fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
 
 api! {
     /// Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
-    /// verdict is written, the handle is 0, and the result is `LS2D_RECORD`.
+    /// verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no verdict.
     fn ls2d_replay_open(
         data: In<'_, u8>,
         size: usize,

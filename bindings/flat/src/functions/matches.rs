@@ -14,7 +14,7 @@ use crate::records::{
     REQUEST_LOAD, REQUEST_SAVE, RawMatchConfig, RawMatchEvent, RawRequest, match_status,
 };
 use crate::status::{Failure, Outcome, Status, value};
-use crate::table::{self, Bytes, with};
+use crate::table::{self, with};
 
 /// A participant of a match.
 pub(crate) struct Match {
@@ -42,7 +42,8 @@ impl Match {
         self.endpoint.session_mut().ok_or_else(waits)
     }
 
-    fn next_event(&mut self) -> Option<Happened> {
+    /// The next event, which stays in the queue until it is popped.
+    fn next_event(&mut self) -> Option<&mut Happened> {
         while let Some(event) = self.endpoint.next_event() {
             self.events.push_back(match event {
                 JoinEvent::Refused { reason, .. } => plain(RawMatchEvent::refused(reason)),
@@ -57,7 +58,7 @@ impl Match {
             let events: Vec<Event> = std::iter::from_fn(|| session.next_event()).collect();
             self.events.extend(events.into_iter().map(|event| plain(RawMatchEvent::of(event))));
         }
-        self.events.pop_front()
+        self.events.front_mut()
     }
 
     fn next_request(&mut self) -> Option<Request> {
@@ -85,6 +86,11 @@ fn identity(config: &RawMatchConfig, offer: &[u8]) -> Identity {
 
 fn own_seats(config: &RawMatchConfig) -> u8 {
     u8::try_from(config.own_seats).unwrap_or(u8::MAX)
+}
+
+/// Calls a function of the session.
+fn tell(handle: u32, act: impl FnOnce(&mut Session)) -> Outcome {
+    with(handle, |game: &mut Match| game.session().map(act))
 }
 
 fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
@@ -230,10 +236,7 @@ api! {
     /// Passes the hash that `LS2D_REQUEST_CHECKSUM` requests.
     fn ls2d_match_report_hash(handle: u32, tick: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
-        with(handle, |game: &mut Match| {
-            game.session()?.report_hash(tick, hash.0);
-            Ok(())
-        })
+        tell(handle, |session| session.report_hash(tick, hash.0))
     }
 
     /// The next packet, of at most 1200 bytes, and its destination, an address of at most 32 bytes. `LS2D_NONE` if
@@ -263,11 +266,15 @@ api! {
     fn ls2d_match_next_event(handle: u32, event: Out<'_, RawMatchEvent>) {
         let mut event = event;
         event.check()?;
-        let mut next = with(handle, |game: &mut Match| game.next_event().ok_or_else(Failure::none))?;
-        if let Some(state) = next.state {
-            next.event.value = table::add(Bytes(state))?;
-        }
-        event.set(next.event)
+        with(handle, |game: &mut Match| {
+            let Happened { event: next, state } = game.next_event().ok_or_else(Failure::none)?;
+            if let Some(state) = state {
+                next.value = table::add_taken(|| Ok(std::mem::take(state)))?;
+            }
+            event.set(*next)?;
+            game.events.pop_front();
+            Ok(())
+        })
     }
 
     /// Writes 1 if a joining peer waits for its initial state, otherwise 0.
@@ -350,51 +357,35 @@ api! {
 
     /// Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`, to inform the other peers.
     fn ls2d_match_leave(handle: u32) {
-        with(handle, |game: &mut Match| {
-            game.session()?.leave();
-            Ok(())
-        })
+        tell(handle, |session| session.leave())
     }
 
     /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
-    /// majority has decided on the end, other peers can get seats.
+    /// majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
+    /// back: decide by a state of a confirmed tick (`ls2d_match_ticks`).
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
-        with(handle, |game: &mut Match| {
-            game.session()?.end_at(ticks);
-            Ok(())
-        })
+        tell(handle, |session| session.end_at(ticks))
     }
 
-    /// Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on.
+    /// Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on:
+    /// during a pause, the program of each peer calls `ls2d_match_update` and does not call `ls2d_match_advance`.
     fn ls2d_match_pause(handle: u32, paused: u32) {
-        with(handle, |game: &mut Match| {
-            game.session()?.pause(paused != 0);
-            Ok(())
-        })
+        tell(handle, |session| session.pause(paused != 0))
     }
 
     /// Votes for going on without a missing peer.
     fn ls2d_match_go_on_without(handle: u32, peer: u32) {
-        with(handle, |game: &mut Match| {
-            game.session()?.go_on_without(PeerId(peer));
-            Ok(())
-        })
+        tell(handle, |session| session.go_on_without(PeerId(peer)))
     }
 
     /// Votes for removing the player with this key. The vote counts only while this peer is a voter.
     fn ls2d_match_kick(handle: u32, key: u64) {
-        with(handle, |game: &mut Match| {
-            game.session()?.kick(Key(key));
-            Ok(())
-        })
+        tell(handle, |session| session.kick(Key(key)))
     }
 
     /// Sets the number of ticks that may be played with guessed inputs; 0 is lockstep.
     fn ls2d_match_set_guess(handle: u32, ticks: u32) {
         let ticks = u16::try_from(ticks).map_err(|_| value("the number of guessed ticks", ticks))?;
-        with(handle, |game: &mut Match| {
-            game.session()?.set_guess(ticks);
-            Ok(())
-        })
+        tell(handle, |session| session.set_guess(ticks))
     }
 }

@@ -9,7 +9,7 @@ use crate::border::{In, Out};
 use crate::describe::api;
 use crate::records::{RawConfig, RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
-use crate::table::{self, Bytes, Commands, Kind, with, with_two};
+use crate::table::{self, Commands, Kind, with, with_two};
 
 /// A recording of a world; `None` once it is finished.
 pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
@@ -85,18 +85,18 @@ api! {
     fn ls2d_recording_take(recording: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
-        let taken = with(recording, |recording: &mut SandboxRecorder| Ok(recording.get()?.take_bytes()))?;
-        bytes.set(table::add(Bytes(taken))?)
+        let take = || with(recording, |recording: &mut SandboxRecorder| Ok(recording.get()?.take_bytes()));
+        bytes.set(table::add_taken(take)?)
     }
 
     /// Ends a recording, and returns the remaining bytes.
     fn ls2d_recording_finish(recording: u32, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;
-        let rest = with(recording, |SandboxRecorder(recording)| {
+        let take = |SandboxRecorder(recording): &mut SandboxRecorder| {
             Ok(recording.take().ok_or_else(finished)?.finish()?)
-        })?;
-        bytes.set(table::add(Bytes(rest))?)
+        };
+        bytes.set(table::add_taken(|| with(recording, take))?)
     }
 
     /// Verifies a replay of a world, which may come from any source. A null `limits` stands for the default limits.

@@ -43,7 +43,7 @@ fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekErro
 api! {
     /// Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
     /// t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
-    /// and the result is `LS2D_RECORD`.
+    /// and the result is `LS2D_RECORD`. Other failures write no verdict.
     fn ls2d_timeline_open(
         data: In<'_, u8>,
         size: usize,

@@ -1,12 +1,12 @@
 //! Matches and replays.
 
 use lockstep2d::replay::{Limits, Verdict};
-use lockstep2d::session::{Config, Event, RefusalReason, Status, Timing};
+use lockstep2d::session::{Event, RefusalReason, Status};
 
 use super::{check_reserved, check_size, size};
 use crate::describe::{constants, records};
 use crate::numbers::RawHash;
-use crate::status::{Outcome, value};
+use crate::status::Outcome;
 
 constants! {
     /// Verdict: setup and inputs reproduce every checkpoint and the trailer.
@@ -160,9 +160,11 @@ records! {
         delay_min: u32,
         /// Largest delay of inputs in ticks.
         delay_max: u32,
-        /// Interval in ticks at which states are saved.
+        /// Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1 with
+        /// guessed inputs, otherwise 6 or, with a given `check_interval`, the largest of its divisors up to 8.
         save_interval: u32,
-        /// Interval in ticks at which states are compared: a multiple of `save_interval`.
+        /// Interval in ticks at which states are compared: a multiple of `save_interval`. 0, the default, stands for
+        /// the interval of a Rust `Peer`: the largest multiple up to 10, or `save_interval` if it is more than 10.
         check_interval: u32,
         /// Number of ticks that may be played beyond the last final tick.
         history: u32,
@@ -278,60 +280,6 @@ impl RawVerdict {
         };
         let hash = RawHash::of(verdict.hash().unwrap_or_default());
         RawVerdict { kind, reserved: 0, ticks: verdict.ticks(), hash }
-    }
-}
-
-fn narrow<T: TryFrom<u32>>(name: &str, given: u32) -> Outcome<T> {
-    T::try_from(given).map_err(|_| value(&format!("`{name}`"), given))
-}
-
-impl RawMatchConfig {
-    pub(crate) fn of(config: &Config) -> Self {
-        RawMatchConfig {
-            size: size::<Self>(),
-            seats: config.seats.into(),
-            own_seats: 1,
-            start_with: config.start_with.into(),
-            input_bytes: config.input_bytes.into(),
-            tick_micros: config.tick_micros,
-            guess: config.guess.into(),
-            delay_min: config.delay_min.into(),
-            delay_max: config.delay_max.into(),
-            save_interval: config.save_interval.into(),
-            check_interval: config.check_interval.into(),
-            history: config.history.into(),
-            log_ticks: config.log_ticks,
-            seat_lead: config.seat_lead.into(),
-            seat_within: config.seat_within.into(),
-            peer: 0,
-            match_tag: config.match_tag,
-            patience: config.timing.patience,
-            key: 0,
-            secret: [0; 2],
-        }
-    }
-
-    pub(crate) fn config(&self) -> Outcome<Config> {
-        check_size::<Self>(self.size)?;
-        let mut config = Config::new(self.match_tag, narrow("seats", self.seats)?);
-        config.start_with = narrow("start_with", self.start_with)?;
-        config.input_bytes = narrow("input_bytes", self.input_bytes)?;
-        config.tick_micros = self.tick_micros;
-        config.guess = narrow("guess", self.guess)?;
-        config.delay_min = narrow("delay_min", self.delay_min)?;
-        config.delay_max = narrow("delay_max", self.delay_max)?;
-        config.save_interval = narrow("save_interval", self.save_interval)?;
-        config.check_interval = narrow("check_interval", self.check_interval)?;
-        config.history = narrow("history", self.history)?;
-        config.log_ticks = self.log_ticks;
-        config.seat_lead = narrow("seat_lead", self.seat_lead)?;
-        config.seat_within = narrow("seat_within", self.seat_within)?;
-        config.timing = Timing { patience: self.patience, ..config.timing };
-        config.validate()?;
-        if self.own_seats > self.seats {
-            return Err(value("`own_seats`", self.own_seats));
-        }
-        Ok(config)
     }
 }
 

@@ -10,6 +10,8 @@ mod events;
 mod joint;
 mod joint_parts;
 #[cfg_attr(not(feature = "lockstep"), expect(dead_code, reason = "conversions of the missing functions"))]
+mod match_config;
+#[cfg_attr(not(feature = "lockstep"), expect(dead_code, reason = "conversions of the missing functions"))]
 mod matches;
 mod query;
 mod shape;

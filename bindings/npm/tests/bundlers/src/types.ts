@@ -1,8 +1,8 @@
 // A test of the types: this file is compiled, but not run.
 import {
-    type BodyId, Commands, type JointId, type Lockstep2dError, Match, MatchDriver, type MatchGame, type MoverState, Recorder,
-    Recording, Relay, Replay, ReplayDriver, type ShapeId, type Snapshot, World, box, decodeNativeState, degrees, encodeNativeState,
-    fx, moveCharacter, nativeOffer, verifyReplay,
+    type BodyId, type Bytes, Commands, type Edits, Handle, type JointId, type Lockstep2dError, Match, MatchDriver, type MatchGame,
+    type MoverState, Recorder, Recording, Relay, Replay, ReplayDriver, type ShapeId, type Snapshot, World, box, decodeNativeState,
+    degrees, encodeNativeState, fx, moveCharacter, nativeOffer, verifyReplay,
 } from "lockstep2d";
 
 import { World as CoreWorld, massOf, type BodyOptions, type BodyPose } from "lockstep2d/core";
@@ -91,6 +91,22 @@ export function brief(file: Uint8Array): string {
     driver.step();
     return brief.hash();
 }
+
+/** Bytes of the library are in buffers of their own, which other APIs require. */
+export function bytes(recording: Recording, match: Match, channel: RTCDataChannel): Blob {
+    const floats = world.poses();
+    postMessage(floats, "*", [floats.buffer]);
+    const shared: Float64Array = world.poses(new Float64Array(new SharedArrayBuffer(800)));
+    const send = (_: Uint8Array, packet: Bytes): void => channel.send(packet);
+    const driver = new MatchDriver(match, game, send);
+    driver.pause(!driver.isPaused && shared.length > 0);
+    driver.dispose();
+    return new Blob([recording.take(), world.toBytes(), recording.finish()]);
+}
+
+export const weightless = (edits: Edits, { dispose }: Handle): void => (edits.setGravity([0, 0]), dispose());
+// @ts-expect-error The class has a type, but no value that a program could import.
+export const handle: unknown = Handle;
 
 export const codeOf = (error: unknown): string => (error as Lockstep2dError).code;
 // @ts-expect-error The types cannot refuse a number with a fraction, but they refuse a wrong object.

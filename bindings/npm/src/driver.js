@@ -1,0 +1,255 @@
+// A driver that plays a game in a match.
+import { callable, fail, flag, given, instance, micros, object } from "./check.js";
+import { Lockstep2dError } from "./error.js";
+import { disposable } from "./library.js";
+import { Match } from "./match.js";
+
+// Largest step back of the time in milliseconds that is no error. Within a task, the time of a frame or an event may be
+// a little less than `performance.now()`.
+const BACK_MAX = 1000;
+
+export class MatchDriver {
+    #match;
+    #game;
+    #send;
+    #saves = new Map();
+    #tick = 0;
+    #events = [];
+    #isFinished = false;
+    #failure;
+    #sendError;
+    // Inputs that were read but not issued. They are passed again, so that each key press counts exactly once.
+    #unissued;
+    // The latest time.
+    #latest = 0;
+    #isDisposed = false;
+    // Whether this peer requests a pause, and the other peers that request one.
+    #pauses = false;
+    #pausing = new Set();
+
+    constructor(match, game, send) {
+        this.#match = instance(match, Match, "the match");
+        this.#game = object(game, "the game");
+        this.#send = callable(send, "`send`");
+        this.#keep(0);
+    }
+
+    get match() {
+        return this.#match;
+    }
+
+    get tick() {
+        return this.#tick;
+    }
+
+    get ended() {
+        // After `ask`, there is no match until the state arrives, and `ticks` would throw.
+        return this.#isFinished && this.#match.status !== "connecting" && this.#tick === this.#match.ticks().final;
+    }
+
+    get sendError() {
+        return this.#sendError;
+    }
+
+    get isPaused() {
+        // When all inputs are final, nobody waits for a player that closes its page during a pause.
+        return !this.#isFinished && (this.#pauses || this.#pausing.size > 0);
+    }
+
+    pause(paused) {
+        this.#check();
+        this.#pauses = flag(given(paused, "`paused`"), "`paused`");
+        // A peer that joins passes its request when the state arrives.
+        if (this.#match.status !== "connecting") {
+            this.#match.pause(paused);
+        }
+    }
+
+    dispose() {
+        this.#forget(() => true);
+        this.#isDisposed = true;
+    }
+
+    receive(now, from, packet) {
+        this.#check();
+        this.#time(now);
+        this.#match.receive(now, from, packet);
+    }
+
+    update(now, readInputs) {
+        this.#check();
+        callable(readInputs, "`readInputs`");
+        if (this.#failure !== undefined) {
+            throw this.#failure.error;
+        }
+        this.#time(now);
+        let missing;
+        try {
+            missing = this.#update(now, readInputs);
+        } catch (error) {
+            this.#failure = { error };
+            throw error;
+        }
+        if (missing !== undefined) {
+            throw missing.error;
+        }
+        return this.#events.splice(0);
+    }
+
+    #check() {
+        if (this.#isDisposed) {
+            throw new Lockstep2dError("DISPOSED", "this MatchDriver was disposed");
+        }
+    }
+
+    // Checks a time before it reaches the match, whose clock cannot be put back.
+    #time(now) {
+        micros(now, "the time");
+        if (now < this.#latest - BACK_MAX) {
+            fail(`the time is ${now} ms, and was ${this.#latest} ms before: it must not decrease`);
+        }
+        this.#latest = Math.max(this.#latest, now);
+    }
+
+    #update(now, readInputs) {
+        this.#match.update(now);
+        for (let event = this.#match.nextEvent(); event !== undefined; event = this.#match.nextEvent()) {
+            if (event.kind === "state") {
+                this.#resume(event.tick, event.state);
+            }
+            if (event.kind === "pause") {
+                event.value === 1 ? this.#pausing.add(event.peer) : this.#pausing.delete(event.peer);
+            }
+            this.#isFinished ||= event.status === "finished";
+            this.#events.push(event);
+        }
+        this.#fulfil();
+        const missing = this.#play(now, readInputs);
+        if (this.#match.wantsState) {
+            this.#offer();
+        }
+        this.#transmit();
+        return missing;
+    }
+
+    // Plays the ticks that are due. Returns an error that concerns the inputs instead of throwing it: no inputs were
+    // issued, so the match can continue with the next inputs.
+    #play(now, readInputs) {
+        while (!this.isPaused && this.#match.isDue(now)) {
+            const { seats, inputBytes } = this.#match;
+            let issued;
+            try {
+                if (this.#unissued?.length !== seats.length * inputBytes) {
+                    this.#unissued = seats.length === 0 ? new Uint8Array() : readInputs(seats);
+                }
+                issued = this.#match.advance(now, this.#unissued);
+            } catch (error) {
+                this.#unissued = undefined;
+                return { error };
+            }
+            if (issued) {
+                this.#unissued = undefined;
+            }
+            const before = this.#tick;
+            this.#fulfil();
+            if (!issued && this.#tick === before) {
+                break;
+            }
+        }
+        return undefined;
+    }
+
+    // `send` of a data channel throws if the other page is gone. The packet then counts as lost in the network.
+    #transmit() {
+        for (let sent = this.#match.nextPacket(); sent !== undefined; sent = this.#match.nextPacket()) {
+            try {
+                this.#send(sent.to, sent.packet);
+            } catch (error) {
+                this.#sendError = error;
+            }
+        }
+    }
+
+    #keep(tick) {
+        this.#forget((kept) => kept === tick);
+        this.#saves.set(tick, { saved: this.#game.save(), hash: this.#game.hash() });
+    }
+
+    #forget(condition) {
+        for (const [tick, { saved }] of this.#saves) {
+            if (condition(tick)) {
+                this.#game.drop?.(saved);
+                this.#saves.delete(tick);
+            }
+        }
+    }
+
+    #resume(tick, state) {
+        this.#game.decode(state);
+        this.#isFinished = false;
+        this.#tick = tick;
+        this.#forget(() => true);
+        this.#keep(tick);
+        // The requests of a match that this peer took part in before do not count in this one.
+        this.#pausing.clear();
+        this.#match.pause(this.#pauses);
+    }
+
+    #fulfil() {
+        for (let request = this.#match.nextRequest(); request !== undefined; request = this.#match.nextRequest()) {
+            this.#answer(request);
+        }
+    }
+
+    #answer({ kind, tick, inputs, absent }) {
+        switch (kind) {
+            case "save":
+                this.#keep(tick);
+                break;
+            case "load":
+                this.#game.load(this.#saved(tick).saved);
+                this.#forget((kept) => kept > tick);
+                this.#tick = tick;
+                break;
+            case "advance":
+                this.#game.step(inputs, absent);
+                this.#tick = tick + 1;
+                break;
+            case "checksum":
+                this.#match.reportHash(tick, this.#saved(tick).hash);
+                break;
+            default:
+                // Keeps the newest state up to this tick, for peers that join.
+                this.#forgetBefore(tick);
+        }
+    }
+
+    #forgetBefore(tick) {
+        const newest = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= tick));
+        this.#forget((kept) => kept < Math.min(newest, tick));
+    }
+
+    #saved(tick) {
+        const found = this.#saves.get(tick);
+        if (found === undefined) {
+            throw new Lockstep2dError("VALUE", `there is no state of tick ${tick}`);
+        }
+        return found;
+    }
+
+    // Offers the newest final state as bytes, and then restores the current state of the game.
+    #offer() {
+        const { confirmed } = this.#match.ticks();
+        const tick = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= confirmed));
+        if (tick < 0) {
+            return;
+        }
+        const now = this.#game.save();
+        this.#game.load(this.#saves.get(tick).saved);
+        const state = this.#game.encode();
+        this.#game.load(now);
+        this.#game.drop?.(now);
+        this.#match.offerState(tick, state);
+    }
+}
+disposable(MatchDriver);
