@@ -171,8 +171,8 @@ impl Relay {
         }
     }
 
-    /// Connects again in another thread, until an attempt succeeds or this member is dropped. A thread that outlived its
-    /// member could replace the connection of a new member with the same secret.
+    /// Connects again in another thread, until an attempt succeeds or this member is dropped. A thread that outlived
+    /// its member could replace the connection of a new member with the same secret.
     fn reconnect(&mut self) {
         let (sender, receiver) = channel();
         let target = self.target.clone();
@@ -282,26 +282,19 @@ fn connect(host: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Whether the connection can still be used after this error.
+/// Whether the connection can still be read after this error.
 fn is_passing(error: &tungstenite::Error) -> bool {
-    match error {
-        tungstenite::Error::Io(error) => {
-            matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
-        }
-        tungstenite::Error::WriteBufferFull(_) => true,
-        _ => false,
-    }
+    let tungstenite::Error::Io(error) = error else { return false };
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
 }
 
 impl Transport for Relay {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Ok(to) = <[u8; ADDRESS_BYTES]>::try_from(to.bytes()) else { return };
         let Some((socket, _)) = self.connection() else { return };
-        if let Err(error) = socket.send(Message::binary(frame(to, packet)))
-            && !is_passing(&error)
-        {
-            self.reconnect();
-        }
+        // An error of the connection is left to `receive`, which first reads the frames that have arrived. One of them
+        // may tell that a newer connection has replaced this one.
+        let _ = socket.send(Message::binary(frame(to, packet)));
     }
 
     fn receive(&mut self) -> Option<(Address, Vec<u8>)> {

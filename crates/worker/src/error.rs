@@ -9,13 +9,29 @@ use url::Url;
 
 #[derive(Debug)]
 pub(crate) enum WorkerError {
-    Start { what: &'static str, error: io::Error },
-    Nats { what: &'static str, why: String },
-    Bucket { url: Box<str>, error: Box<object_store::Error> },
-    Read { path: PathBuf, error: io::Error },
+    Start {
+        what: &'static str,
+        error: io::Error,
+    },
+    Nats {
+        what: &'static str,
+        why: String,
+    },
+    Bucket {
+        url: Box<str>,
+        error: Box<object_store::Error>,
+    },
+    Read {
+        path: PathBuf,
+        error: io::Error,
+    },
     /// The path is not relative, leads out of its folder, or is not UTF-8.
-    Path { path: PathBuf },
-    NothingToSubmit { path: PathBuf },
+    Path {
+        path: PathBuf,
+    },
+    NothingToSubmit {
+        path: PathBuf,
+    },
     Output(io::Error),
 }
 

@@ -3,13 +3,14 @@
 use std::io::Write;
 use std::time::Duration;
 
+use async_nats::jetstream::Message;
 use futures_util::StreamExt;
 use lockstep2d::lockstep::RulesId;
 
 use crate::app::Connection;
 use crate::error::WorkerError;
 use crate::queue::Queue;
-use crate::shutdown::Shutdown;
+use crate::shutdown::{Phase, Shutdown};
 
 /// Longest time for which the server holds a request for results.
 const EXPIRES: Duration = Duration::from_secs(2);
@@ -17,34 +18,58 @@ const EXPIRES: Duration = Duration::from_secs(2);
 /// Maximum number of results per request.
 const BATCH: usize = 500;
 
-/// Prints the results. With `follow`, also prints later results, until a signal.
+/// Time after a signal in which a batch may be printed completely.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Prints the results. With `follow`, also prints later results. A signal ends it.
 pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
-    let shutdown = Shutdown::listen(Duration::ZERO)?;
+    let mut shutdown = Shutdown::listen(GRACE)?;
+    let (connection, mut signal) = (connection.clone(), shutdown.clone());
+    // A task of its own, because printing blocks while the reader of the output takes no lines.
+    let printing = tokio::spawn(async move {
+        tokio::select! {
+            printed = print(&connection, rules, follow) => printed,
+            () = signal.reached(Phase::Draining) => Ok(()),
+        }
+    });
+    tokio::select! {
+        printed = printing => printed.map_err(|error| WorkerError::Output(error.into()))?,
+        () = shutdown.reached(Phase::Stopping) => Ok(()),
+    }
+}
+
+async fn print(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
     let queue = Queue::open(connection, rules).await?;
     let mut consumer = queue.results().await?;
     let mut left = consumer.info().await.map_err(WorkerError::nats("read the results"))?.num_pending;
-    let mut out = std::io::stdout().lock();
-    while left > 0 || (follow && shutdown.is_running()) {
+    while left > 0 || follow {
         let most = if follow { BATCH } else { BATCH.min(usize::try_from(left).unwrap_or(BATCH)) };
         let batch = consumer.fetch().max_messages(most).expires(EXPIRES).messages();
         let batch = batch.await.map_err(WorkerError::nats("read the results"))?;
         // Collects the whole batch first. If a pager slowed down the reading of a batch, the client would drop messages
         // of it.
         let received: Vec<_> = batch.collect().await;
-        let before = left;
-        for result in received {
-            let message = result
-                .map_err(|error| WorkerError::Nats { what: "read the results", why: error.to_string() })?;
-            out.write_all(&message.payload).map_err(WorkerError::Output)?;
-            out.write_all(b"\n").map_err(WorkerError::Output)?;
-            left = left.saturating_sub(1);
-        }
-        out.flush().map_err(WorkerError::Output)?;
-        if left == before && !follow {
+        let count = tokio::task::block_in_place(|| print_batch(received))?;
+        left = left.saturating_sub(count);
+        if count == 0 && !follow {
             // Results may have expired since they were counted. If the server is gone, this request fails.
             let info = consumer.info().await.map_err(WorkerError::nats("read the results"))?;
             left = left.min(info.num_pending);
         }
     }
     Ok(())
+}
+
+/// Prints a batch of results, and returns their number.
+fn print_batch(received: Vec<Result<Message, async_nats::Error>>) -> Result<u64, WorkerError> {
+    let (mut out, mut count) = (std::io::stdout().lock(), 0);
+    for result in received {
+        let message =
+            result.map_err(|error| WorkerError::Nats { what: "read the results", why: error.to_string() })?;
+        out.write_all(&message.payload).map_err(WorkerError::Output)?;
+        out.write_all(b"\n").map_err(WorkerError::Output)?;
+        count += 1;
+    }
+    out.flush().map_err(WorkerError::Output)?;
+    Ok(count)
 }

@@ -54,7 +54,6 @@ struct Work<G: Game + 'static> {
     read_max: Duration,
     /// Interval between progress messages to the server.
     progress: Duration,
-    shutdown: Shutdown,
     metrics: Arc<Metrics>,
 }
 
@@ -96,7 +95,6 @@ pub(crate) async fn run<G: Game + 'static>(
         max_deliver: arguments.max_deliver.into(),
         read_max: arguments.read_seconds,
         progress: arguments.ack_seconds / 3,
-        shutdown: shutdown.clone(),
         metrics,
     };
     let mut outage = Outage::default();
@@ -104,11 +102,21 @@ pub(crate) async fn run<G: Game + 'static>(
         let message = next(&jobs).await;
         let is_over = outage.exceeds(message.is_err(), Instant::now());
         let message = message.or_else(|error| if is_over { Err(error) } else { Ok(None) })?;
-        if let Some(message) = message {
-            work.metrics.is_busy.store(true, Ordering::Relaxed);
-            work.take(&message).await?;
-            work.metrics.is_busy.store(false, Ordering::Relaxed);
+        let Some(message) = message else { continue };
+        if !shutdown.is_running() {
+            // The signal arrived during the request.
+            give_back(&message).await;
+            break;
         }
+        work.metrics.is_busy.store(true, Ordering::Relaxed);
+        tokio::select! {
+            taken = work.take(&message) => taken?,
+            () = shutdown.reached(Phase::Stopping) => {
+                work.judge.stop();
+                give_back(&message).await;
+            }
+        }
+        work.metrics.is_busy.store(false, Ordering::Relaxed);
     }
     Ok(())
 }
@@ -183,16 +191,11 @@ impl<G: Game + 'static> Work<G> {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
         }
-        let mut shutdown = self.shutdown.clone();
         let verify = self.verify(job, digest, delivered);
         tokio::pin!(verify);
         loop {
             tokio::select! {
                 done = &mut verify => return done,
-                () = shutdown.reached(Phase::Stopping) => {
-                    self.judge.stop();
-                    return Done::Again(Duration::ZERO);
-                }
                 () = tokio::time::sleep(self.progress) => {
                     // If this message is lost, another worker may verify the file, too. The server refuses the later
                     // result.
@@ -238,8 +241,13 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Acknowledges a message, and waits for the server's confirmation. If the acknowledgement is lost, the job is
-/// delivered again. The worker that gets it finds the result and drops the job.
+/// Returns a job to the queue at once.
+async fn give_back(message: &Message) {
+    acknowledge(message, AckKind::Nak(Some(Duration::ZERO))).await;
+}
+
+/// Acknowledges a message, and waits up to 5 s for the server's confirmation. If the acknowledgement is lost, the job
+/// is delivered again. The worker that gets it finds the result and drops the job.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }

@@ -14,44 +14,56 @@ use tokio_tungstenite::{WebSocketStream, accept_hdr_async_with_config};
 
 use super::Shared;
 use super::limits::Limits;
-use super::meter::{Meter, Pace};
+use super::meter::{Bucket, Meter, Pace};
+use super::metered::Metered;
 use super::queue::{Next, Queue};
 use super::rooms::Full;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
-/// Longest handshake. Also the longest wait for the first frame after the handshake.
+/// Longest handshake. Also the longest wait for the first frame after the handshake, and for the answer to a close
+/// frame.
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;
 /// Number of pings in the idle time.
 const PINGS: u32 = 3;
+/// Maximum number of bytes that wait to be sent besides one message: answers to pings of a client that reads nothing.
+const ANSWERS_MAX: usize = 64 * 1024;
+/// Upper bound for the bytes of a member in the list of members.
+const MEMBER_BYTES: usize = 32;
 
-// Reasons to close a connection: code and text.
-const CLOSE_SECRET: (u16, &str) = (4000, "expected a secret of 16 bytes");
-const CLOSE_ROOM_FULL: (u16, &str) = (4001, "the room is full");
-const CLOSE_RELAY_FULL: (u16, &str) = (4002, "the relay is full");
-const CLOSE_REPLACED: (u16, &str) = (4003, "the member has connected again");
-const CLOSE_FLOOD: (u16, &str) = (4004, "too many datagrams");
+/// Code and text of a close frame.
+type Reason = (u16, &'static str);
 
-type Socket = WebSocketStream<TcpStream>;
+const CLOSE_SECRET: Reason = (4000, "expected a secret of 16 bytes");
+const CLOSE_ROOM_FULL: Reason = (4001, "the room is full");
+const CLOSE_RELAY_FULL: Reason = (4002, "the relay is full");
+const CLOSE_REPLACED: Reason = (4003, "the member has connected again");
+const CLOSE_FLOOD: Reason = (4004, "too many datagrams");
+
+type Socket = WebSocketStream<Metered>;
 
 pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Error> {
     stream.set_nodelay(true)?;
     let mut code = String::new();
-    let frame_max = Some(ADDRESS_BYTES.saturating_add(shared.limits.datagram_bytes));
+    let Limits { datagram_bytes, members, bytes_per_second, datagrams_per_second, .. } = shared.limits;
+    let frame_max = ADDRESS_BYTES.saturating_add(datagram_bytes);
+    let message_max = frame_max.saturating_add(members.saturating_mul(MEMBER_BYTES));
     let config = WebSocketConfig::default()
-        .max_message_size(frame_max)
-        .max_frame_size(frame_max)
+        .max_message_size(Some(frame_max))
+        .max_frame_size(Some(frame_max))
         .read_buffer_size(8 * 1024)
-        .write_buffer_size(8 * 1024);
+        .write_buffer_size(8 * 1024)
+        .max_write_buffer_size(message_max.saturating_add(ANSWERS_MAX));
     #[expect(clippy::result_large_err, reason = "the type is that of the callback")]
     let check = |request: &Request, response: Response| -> Result<Response, ErrorResponse> {
         code = admitted(request, &shared.limits.origins).map_err(refusal)?;
         Ok(response)
     };
-    let accepted = timeout(HANDSHAKE_MAX, accept_hdr_async_with_config(stream, check, Some(config))).await;
-    let Ok(socket) = accepted else { return Ok(()) };
+    let accept = accept_hdr_async_with_config(Metered::new(stream), check, Some(config));
+    let Ok(socket) = timeout(HANDSHAKE_MAX, accept).await else { return Ok(()) };
     let mut socket = socket?;
+    socket.get_mut().limit(Bucket::of_connection(bytes_per_second, datagrams_per_second));
     let Ok(secret) = timeout(HANDSHAKE_MAX, first_frame(&mut socket)).await else { return Ok(()) };
     let Some(member) = secret?.as_deref().and_then(member_of) else {
         return close(&mut socket, CLOSE_SECRET).await;
@@ -62,7 +74,14 @@ pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Erro
             let mut connection = Connection { shared, socket, code, member, queue };
             let ended = connection.run().await;
             shared.rooms.leave(&connection.code, &connection.queue);
-            ended
+            let reason = match ended {
+                Err(_) if connection.socket.get_ref().is_flood() => Some(CLOSE_FLOOD),
+                ended => ended?,
+            };
+            match reason {
+                Some(reason) => close(&mut connection.socket, reason).await,
+                None => Ok(()),
+            }
         }
         Err(Full::Room) => close(&mut socket, CLOSE_ROOM_FULL).await,
         Err(Full::Relay) => close(&mut socket, CLOSE_RELAY_FULL).await,
@@ -107,9 +126,16 @@ fn member_of(secret: &[u8]) -> Option<Member> {
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
 }
 
-async fn close(socket: &mut Socket, (code, reason): (u16, &'static str)) -> Result<(), Error> {
+/// Sends a close frame and reads until the client has answered it. If the relay left frames of the client unread, the
+/// system would reset the connection, and the client could lose the close frame.
+async fn close(socket: &mut Socket, (code, reason): Reason) -> Result<(), Error> {
     let frame = CloseFrame { code: CloseCode::from(code), reason: reason.into() };
-    let _ = timeout(HANDSHAKE_MAX, socket.close(Some(frame))).await;
+    let closed = async {
+        if socket.close(Some(frame)).await.is_ok() {
+            while let Some(Ok(_)) = socket.next().await {}
+        }
+    };
+    let _ = timeout(HANDSHAKE_MAX, closed).await;
     Ok(())
 }
 
@@ -122,7 +148,8 @@ struct Connection<'a> {
 }
 
 impl Connection<'_> {
-    async fn run(&mut self) -> Result<(), Error> {
+    /// Serves the member until the connection ends. Returns the reason if the relay has to close it.
+    async fn run(&mut self) -> Result<Option<Reason>, Error> {
         let Limits { idle, bytes_per_second, datagrams_per_second, .. } = self.shared.limits;
         let mut meter = Meter::new(bytes_per_second, datagrams_per_second);
         let mut pings = interval((idle / PINGS).max(Duration::from_millis(1)));
@@ -131,34 +158,36 @@ impl Connection<'_> {
         loop {
             tokio::select! {
                 message = self.socket.next() => {
-                    let Some(message) = message else { return Ok(()) };
+                    let Some(message) = message else { return Ok(None) };
                     heard = Instant::now();
                     let message = message?;
                     if message.is_close() {
-                        return Ok(());
+                        // Sends the answer to the close frame.
+                        let _ = timeout(HANDSHAKE_MAX, self.socket.flush()).await;
+                        return Ok(None);
                     }
                     match meter.count(start.elapsed(), message.len()) {
                         Pace::Fine => self.forward(&message),
                         Pace::Fast => {}
-                        Pace::Flood => return close(&mut self.socket, CLOSE_FLOOD).await,
+                        Pace::Flood => return Ok(Some(CLOSE_FLOOD)),
                     }
                 }
                 next = self.queue.next() => {
                     let message = match next {
                         Next::Frame(bytes) => Message::Binary(bytes.into()),
                         Next::Members => self.members(),
-                        Next::Replaced => return close(&mut self.socket, CLOSE_REPLACED).await,
+                        Next::Replaced => return Ok(Some(CLOSE_REPLACED)),
                     };
                     // A member that does not read for the idle time counts as gone.
-                    let Ok(sent) = timeout(idle, self.socket.send(message)).await else { return Ok(()) };
+                    let Ok(sent) = timeout(idle, self.socket.send(message)).await else { return Ok(None) };
                     sent?;
                 }
                 _ = pings.tick() => {
                     if heard.elapsed() > idle {
-                        return Ok(());
+                        return Ok(None);
                     }
                     let ping = Message::Ping(Vec::new().into());
-                    let Ok(sent) = timeout(idle, self.socket.send(ping)).await else { return Ok(()) };
+                    let Ok(sent) = timeout(idle, self.socket.send(ping)).await else { return Ok(None) };
                     sent?;
                 }
             }

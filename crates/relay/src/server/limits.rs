@@ -17,7 +17,7 @@ pub struct Limits {
     /// more, the oldest datagrams are dropped.
     pub queue_bytes: usize,
     /// Maximum number of bytes per second from a member, with bursts of one second. Datagrams above this rate are
-    /// dropped. A rate eight times as high closes the connection.
+    /// dropped. A rate eight times as high closes the connection, also in fragments of messages and in pings.
     pub bytes_per_second: u32,
     /// Maximum number of datagrams per second from a member, with bursts of one second. Datagrams above this rate are
     /// dropped. A rate eight times as high closes the connection.

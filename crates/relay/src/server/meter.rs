@@ -17,26 +17,37 @@ pub(super) enum Pace {
     Flood,
 }
 
+/// Largest header of a frame from a client in bytes.
+const FRAME_HEADER: u64 = 14;
+
 /// A token bucket, which holds at most the units of one second.
 #[derive(Clone, Debug)]
-struct Bucket {
+pub(super) struct Bucket {
     per_second: u64,
     /// Remaining units, in millionths.
     tokens: u64,
+    last: Duration,
 }
 
 impl Bucket {
     fn new(per_second: u64) -> Self {
-        Bucket { per_second, tokens: per_second.saturating_mul(MICROS) }
+        Bucket { per_second, tokens: per_second.saturating_mul(MICROS), last: Duration::ZERO }
     }
 
-    fn refill(&mut self, micros: u64) {
+    /// Bucket for all bytes of a connection. Frames without a datagram also cost bytes. A member within the rates of
+    /// [`Meter`] stays below this rate, even if each frame has the largest header.
+    pub(super) fn of_connection(bytes_per_second: u32, datagrams_per_second: u32) -> Self {
+        let headers = u64::from(datagrams_per_second) * FRAME_HEADER;
+        Bucket::new((u64::from(bytes_per_second) + headers) * EXCESS)
+    }
+
+    /// Takes units at the time `now`. Takes none and returns false if the bucket holds fewer.
+    pub(super) fn take(&mut self, now: Duration, units: usize) -> bool {
+        let micros = u64::try_from(now.saturating_sub(self.last).as_micros()).unwrap_or(u64::MAX);
+        self.last = self.last.max(now);
         let more = self.tokens.saturating_add(self.per_second.saturating_mul(micros));
         self.tokens = more.min(self.per_second.saturating_mul(MICROS));
-    }
-
-    fn take(&mut self, units: u64) -> bool {
-        let rest = self.tokens.checked_sub(units.saturating_mul(MICROS));
+        let rest = self.tokens.checked_sub(u64::try_from(units).unwrap_or(u64::MAX).saturating_mul(MICROS));
         self.tokens = rest.unwrap_or(self.tokens);
         rest.is_some()
     }
@@ -48,29 +59,18 @@ pub(super) struct Meter {
     allowed: [Bucket; 2],
     /// Buckets with [`EXCESS`] times the rates of `allowed`. If one of them is empty, the connection is closed.
     tolerated: [Bucket; 2],
-    last: Duration,
 }
 
 impl Meter {
     pub(super) fn new(bytes_per_second: u32, datagrams_per_second: u32) -> Self {
         let rates = [bytes_per_second, datagrams_per_second].map(u64::from);
-        Meter {
-            allowed: rates.map(Bucket::new),
-            tolerated: rates.map(|rate| Bucket::new(rate * EXCESS)),
-            last: Duration::ZERO,
-        }
+        Meter { allowed: rates.map(Bucket::new), tolerated: rates.map(|rate| Bucket::new(rate * EXCESS)) }
     }
 
     pub(super) fn count(&mut self, now: Duration, bytes: usize) -> Pace {
-        let passed = now.saturating_sub(self.last);
-        self.last = self.last.max(now);
-        let micros = u64::try_from(passed.as_micros()).unwrap_or(u64::MAX);
-        let units = [u64::try_from(bytes).unwrap_or(u64::MAX), 1];
-        for bucket in self.allowed.iter_mut().chain(&mut self.tolerated) {
-            bucket.refill(micros);
-        }
-        let pay = |buckets: &mut [Bucket; 2]| {
-            buckets.iter_mut().zip(units).fold(true, |paid, (bucket, units)| bucket.take(units) && paid)
+        let pay = |[of_bytes, of_datagrams]: &mut [Bucket; 2]| {
+            let paid = [of_bytes.take(now, bytes), of_datagrams.take(now, 1)];
+            paid == [true; 2]
         };
         match (pay(&mut self.tolerated), pay(&mut self.allowed)) {
             (false, _) => Pace::Flood,

@@ -3,6 +3,7 @@
 mod connection;
 mod limits;
 mod meter;
+mod metered;
 mod queue;
 mod rooms;
 

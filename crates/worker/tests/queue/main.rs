@@ -8,6 +8,7 @@
 mod bucket;
 mod objects;
 mod server;
+mod signals;
 
 use std::fs;
 use std::io::{Read, Write};

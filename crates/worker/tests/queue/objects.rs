@@ -1,5 +1,9 @@
 //! Files in the object store: deleted ones, and ones whose content is missing, so that reading them hangs.
 
+use std::process::Command;
+use std::thread;
+use std::time::Duration;
+
 use async_nats::jetstream::{self, Context};
 use lockstep2d::SEMANTICS;
 use lockstep2d::lockstep::{Game, Sandbox};
@@ -13,7 +17,7 @@ fn bucket() -> String {
     format!("{}-{SEMANTICS}-{}_files", Sandbox::RULES.name, Sandbox::RULES.version)
 }
 
-fn with_server<F: Future>(server: &Server, act: impl FnOnce(Context) -> F) -> F::Output {
+pub(crate) fn with_server<F: Future>(server: &Server, act: impl FnOnce(Context) -> F) -> F::Output {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async { act(jetstream::new(async_nats::connect(server.url()).await.unwrap())).await })
 }
@@ -36,6 +40,27 @@ fn a_deleted_object_is_stored_again() {
     assert_eq!(child.terminate(), Some(0));
     let result: Value = serde_json::from_str(&program.results()[0]).unwrap();
     assert_eq!(result["verdict"], "match", "{result}");
+}
+
+/// The pipe gives other bytes when it is opened again, as a file does that is still being written.
+#[test]
+fn a_file_that_changes_while_it_is_submitted_is_an_error() {
+    let folder = Folder::new("changes");
+    let Some(server) = Server::start(&folder) else { return };
+    let program = worker(&server, &folder);
+    let pipe = folder.0.join("in/a.replay");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let writer = thread::spawn(move || {
+        for number in 1..3 {
+            std::fs::write(&pipe, replay(number, 1, 3)).unwrap();
+            // The reader closes the pipe before it is written again.
+            thread::sleep(Duration::from_secs(1));
+        }
+    });
+    let output = program.run(&["submit", "--objects", "in/a.replay"]);
+    writer.join().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("the file has changed"));
 }
 
 #[test]

@@ -69,6 +69,10 @@ impl Server {
         self.process = spawn(self.program, self.port, &self.store);
     }
 
+    pub(crate) fn stop(&mut self) {
+        self.process.kill();
+    }
+
     pub(crate) fn url(&self) -> String {
         format!("nats://127.0.0.1:{}", self.port)
     }
@@ -114,9 +118,13 @@ impl Program {
     }
 
     pub(crate) fn work(&self, arguments: &[&str]) -> Process {
+        self.spawn("work", arguments, Stdio::null())
+    }
+
+    pub(crate) fn spawn(&self, name: &str, arguments: &[&str], output: Stdio) -> Process {
         let mut command = self.command();
-        command.arg("work").args(["--nats", &self.url]).args(arguments);
-        Process(command.stderr(Stdio::null()).spawn().unwrap())
+        command.arg(name).args(["--nats", &self.url]).args(arguments);
+        Process(command.stdout(output).stderr(Stdio::null()).spawn().unwrap())
     }
 
     fn command(&self) -> Command {
