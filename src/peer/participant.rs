@@ -45,6 +45,8 @@ pub struct Peer<G: Game, T> {
     /// Reused buffer for the bytes of a tick's inputs.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
+    /// Error that stopped the simulation. Later updates return it again, and only exchange packets.
+    failure: Option<PeerError>,
 }
 
 impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
@@ -130,15 +132,15 @@ impl<G: Game, T: Transport> Peer<G, T> {
             }
             Entry::Join(role, contact) => Endpoint::join(config, identity, role, contact)?,
         };
-        let (inputs, events) = (Vec::new(), VecDeque::new());
-        Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
+        let (now, end, inputs, events, failure) = (0, None, Vec::new(), VecDeque::new(), None);
+        Ok(Peer { transport, endpoint, simulation, parameters, slot, now, end, inputs, events, failure })
     }
 
     /// Processes received packets, plays ticks again if their inputs have changed, and sends packets. `now` is the time
     /// since a fixed moment.
     ///
     /// # Errors
-    /// [`PeerError`] if this peer cannot continue.
+    /// [`PeerError`] if this peer cannot continue. It still exchanges packets, so it can [`leave`](Peer::leave).
     pub fn update(&mut self, now: Duration) -> Result<(), PeerError> {
         self.now = self.now.max(u64::try_from(now.as_micros()).unwrap_or(u64::MAX));
         for _ in 0..PACKETS_PER_UPDATE {
@@ -149,6 +151,12 @@ impl<G: Game, T: Transport> Peer<G, T> {
             session.end_at(Tick::try_from(end).unwrap_or(Tick::MAX));
         }
         self.endpoint.update(self.now);
+        let outcome = self.carry_out();
+        self.send();
+        outcome
+    }
+
+    fn carry_out(&mut self) -> Result<(), PeerError> {
         self.take_join_events()?;
         if let Some(seat) = self.endpoint.session().and_then(Session::taken_seat) {
             return Err(PeerError::SeatTaken { seat });
@@ -159,9 +167,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
                 self.endpoint.offer_state(Tick::try_from(tick).unwrap_or(Tick::MAX), bytes);
             }
         }
-        self.fulfil()?;
-        self.send();
-        Ok(())
+        self.fulfil()
     }
 
     fn take_join_events(&mut self) -> Result<(), PeerError> {
@@ -169,6 +175,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
             match event {
                 JoinEvent::State { tick, bytes } => {
                     self.simulation.resume(tick.into(), &bytes)?;
+                    self.failure = None;
                     self.events.push_back(PeerEvent::Joined { tick: tick.into() });
                 }
                 JoinEvent::Refused { reason, offer } => match reason {
@@ -190,8 +197,11 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     fn fulfil(&mut self) -> Result<(), PeerError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
         let Some(session) = self.endpoint.session_mut() else { return Ok(()) };
-        self.simulation.fulfil(session)?;
+        self.simulation.fulfil(session).inspect_err(|error| self.failure = Some(error.clone()))?;
         while let Some(event) = session.next_event() {
             self.events.push_back(match event {
                 Event::Desync { peer, tick, ours, theirs } => PeerEvent::Desync(PeerDesync {
@@ -383,6 +393,15 @@ impl<G: Game, T: Transport> Peer<G, T> {
     pub fn take_replay(&mut self) -> Vec<u8> {
         // Before the initial state has arrived, it is unknown whether this peer has a replay.
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
+    }
+
+    /// Returns a complete replay of the ticks that are final so far, with the bytes that have been taken. Recording goes
+    /// on. Empty if this peer has no replay.
+    ///
+    /// # Errors
+    /// [`PeerError`] if the state after the last final tick is not kept, or the replay cannot be finished.
+    pub fn replay_so_far(&mut self) -> Result<Vec<u8>, PeerError> {
+        if self.endpoint.session().is_some() { self.simulation.replay_so_far() } else { Ok(Vec::new()) }
     }
 
     /// Ends the replay after the last final tick, and returns the rest of the replay and the game. First leave or end

@@ -175,6 +175,25 @@ impl<G: Game> Simulation<G> {
         bytes
     }
 
+    /// A complete replay of the committed ticks, with the bytes that have been taken.
+    pub(super) fn replay_so_far(&mut self) -> Result<Vec<u8>, PeerError> {
+        let Some(recorder) = self.recorder.clone() else { return Ok(Vec::new()) };
+        let rest = self.read_committed(|game| recorder.finish(game))??;
+        Ok([&self.taken[..], &rest].concat())
+    }
+
+    /// Reads the game after the last committed tick. The current tick is restored afterwards.
+    fn read_committed<R>(&mut self, read: impl FnOnce(&G) -> R) -> Result<R, PeerError> {
+        if self.tick == self.committed {
+            return Ok(read(&self.game));
+        }
+        let (now, state) = (self.tick, self.game.save());
+        let found = self.play_to(self.committed).map(|()| read(&self.game));
+        self.game.load(&state);
+        self.tick = now;
+        found
+    }
+
     /// Ends the replay after the last committed tick. Returns the game after that tick, and the rest of the replay.
     pub(super) fn finish(mut self) -> Result<(G, Vec<u8>), PeerError> {
         self.play_to(self.committed)?;
@@ -215,11 +234,7 @@ impl<G: Game> Simulation<G> {
     ) -> Result<DesyncReport, PeerError> {
         let players = self.game.players();
         let known = self.committed;
-        let (now, state) = (self.tick, self.game.save());
-        self.play_to(known)?;
-        let hash = self.game.state_hash();
-        self.game.load(&state);
-        self.tick = now;
+        let hash = self.read_committed(G::state_hash)?;
         let recorder = self.recorder.as_ref();
         let replay = recorder.map(|recorder| [&self.taken[..], &recorder.so_far(hash)].concat());
         let found = Desync { players, tick, known, seats, hashes };

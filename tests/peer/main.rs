@@ -1,11 +1,13 @@
 //! Matches of a game with physics over a network in memory, in simulated time.
 
 mod another_match;
+mod errors;
 mod pause;
 mod presses;
 mod pushers;
 #[cfg(feature = "sealed")]
 mod sealed;
+mod so_far;
 mod start;
 
 use std::time::Duration;

@@ -26,7 +26,7 @@ pub struct DragPlugin;
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// Body to hold. `None` for the first dynamic body at the position.
+    /// Body to hold. `None` for the first dynamic body at the position, until one is held.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -99,6 +99,8 @@ pub(crate) fn pull(
             Some(body) => grip(world, body, at),
             None => grab(world, at),
         };
+        // If the body is despawned, the pointer holds no other body until it is released.
+        hand.target = hand.target.or(hand.held.map(|held| held.body));
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
     // Replaces the force that remains from an earlier frame without a tick. In a frame with two ticks, only the first

@@ -182,7 +182,8 @@ impl<G: LockstepGame> Lockstep<G> {
         self.is_paused
     }
 
-    /// Plays one tick in the next frame although the game is paused. Has no effect in a match.
+    /// Plays one tick in the next frame although the game is paused. If it is not paused, this tick is played in addition
+    /// to those that are due. Has no effect in a match.
     pub fn step_once(&mut self) {
         self.single_steps = self.single_steps.saturating_add(1);
     }

@@ -27,8 +27,8 @@ pub(crate) struct Scene {
     pub(crate) open: OpenScene,
 }
 
-/// Opens a scene. The argument is the random seed.
-pub(crate) type OpenScene = Rc<dyn Fn(u64) -> Result<Box<dyn Source>, SourceError>>;
+/// Opens a scene. The arguments are the random seed and the limits for its replay.
+pub(crate) type OpenScene = Rc<dyn Fn(u64, &Limits) -> Result<Box<dyn Source>, SourceError>>;
 
 /// Opens a replay of the game. The first argument is the name for display.
 pub(crate) type OpenReplay = Rc<dyn Fn(&str, &'static [u8], &Limits) -> Result<Box<dyn Source>, Verdict>>;

@@ -17,9 +17,9 @@ pub fn sandbox() -> Viewer<Sandbox> {
         .name("lockstep2d-viewer")
         .about("Shows replays, snapshots and live scenes of lockstep2d");
     let with_scenes = ALL.iter().fold(viewer, |viewer, scene| {
-        viewer.source(scene.name, scene.about, move |seed| {
+        viewer.limited_source(scene.name, scene.about, move |seed, limits| {
             let live = Live::scene(scene, seed).map_err(SourceError::of)?;
-            Ok(Box::new(live) as Box<dyn Source>)
+            Ok(Box::new(live.limited(limits)) as Box<dyn Source>)
         })
     });
     with_scenes.first(FIRST)

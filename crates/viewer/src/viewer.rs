@@ -107,10 +107,20 @@ impl<G: Game + 'static> Viewer<G> {
     /// Adds a scene with its own [`Source`]. The players of the viewer do not take part in it.
     #[must_use]
     pub fn source(
-        mut self,
+        self,
         name: impl Into<String>,
         about: impl Into<String>,
         open: impl Fn(u64) -> Result<Box<dyn Source>, SourceError> + 'static,
+    ) -> Self {
+        self.limited_source(name, about, move |seed, _| open(seed))
+    }
+
+    /// Adds a scene with its own [`Source`], which uses the limits of the viewer.
+    pub(crate) fn limited_source(
+        mut self,
+        name: impl Into<String>,
+        about: impl Into<String>,
+        open: impl Fn(u64, &Limits) -> Result<Box<dyn Source>, SourceError> + 'static,
     ) -> Self {
         let kind = SceneKind::Source(Rc::new(open));
         self.scenes.push(SceneOf { name: name.into(), about: about.into(), kind });
@@ -166,7 +176,8 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { layers, ..self }
     }
 
-    /// Sets the limits for opened replays.
+    /// Sets the limits for replays: those that are opened, and those of the scenes with a setup. Network matches are
+    /// recorded without limits.
     #[must_use]
     pub fn limits(self, limits: Limits) -> Self {
         Viewer { limits, ..self }
@@ -247,10 +258,10 @@ impl<G: Game + 'static> Viewer<G> {
             SceneKind::Setup(setup) => {
                 let (setup, players) = (Rc::clone(setup), self.players.clone());
                 let (name, presentation) = (name.clone(), self.presentation.clone());
-                Rc::new(move |seed| {
+                Rc::new(move |seed, limits| {
                     let local = LocalMatch::new(name.clone(), &setup(seed), &players, seed);
                     let local = local.map_err(SourceError::of)?;
-                    Ok(Box::new(local.presented(presentation.clone())))
+                    Ok(Box::new(local.presented(presentation.clone()).limited(limits)))
                 })
             }
         };

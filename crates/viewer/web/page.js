@@ -45,9 +45,19 @@ function show(name, bytes) {
     element("glcanvas").focus();
 }
 
-async function showFiles(files) {
+// Shows files, or compares them with the shown file. The page gets no key events before it has the focus, so a press of
+// Shift is passed on while the file is opened.
+async function showFiles(files, compares) {
+    const shift = into_sapp_keycode("ShiftLeft");
     for (const file of files) {
-        show(file.name, new Uint8Array(await file.arrayBuffer()));
+        const bytes = new Uint8Array(await file.arrayBuffer());
+        if (compares) {
+            wasm_exports.key_down(shift, 0, false);
+        }
+        show(file.name, bytes);
+        if (compares) {
+            wasm_exports.key_up(shift, 0);
+        }
     }
 }
 
@@ -63,9 +73,12 @@ async function showUrl(url) {
 window.addEventListener("drop", (event) => {
     event.preventDefault();
     event.stopImmediatePropagation();
-    showFiles(Array.from(event.dataTransfer.files));
+    showFiles(Array.from(event.dataTransfer.files), event.shiftKey);
 }, { capture: true });
-element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
+element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files), false));
+
+// Mouse events of a drag go to the canvas, also beside it and when the button is released there.
+element("glcanvas").addEventListener("pointerdown", (event) => event.target.setPointerCapture(event.pointerId));
 
 // Opens the file or scene of the URL. Called after the viewer's first report, because the viewer accepts no files
 // before.

@@ -46,11 +46,14 @@ function serve() {
     return new Promise((done) => server.listen(0, "127.0.0.1", () => done(server)));
 }
 
+// Code of Shift in the debugging protocol.
+const SHIFT = 8;
+
 // Drops a file on the page.
-async function drop(browser, file) {
+async function drop(browser, file, modifiers = 0) {
     const data = { items: [], files: [file], dragOperationsMask: 1 };
     for (const type of ["dragEnter", "dragOver", "drop"]) {
-        await browser.send("Input.dispatchDragEvent", { type, x: 400, y: 300, data });
+        await browser.send("Input.dispatchDragEvent", { type, x: 400, y: 300, data, modifiers });
     }
 }
 
@@ -94,9 +97,23 @@ async function scrubsAndMatches(browser) {
         const near = (state) => Math.abs(state.tick - part * ticks) <= 1 + ticks / (width - 24);
         state = await browser.until(STATE, near, `scrubbed to ${part} of ${ticks}`);
     }
-    await browser.mouse("mouseReleased", ...place(0.4));
+    // The button is released below the canvas. The pointer then scrubs no more.
+    await browser.mouse("mouseMoved", place(0.4)[0], height + 12);
+    await browser.mouse("mouseReleased", place(0.4)[0], height + 12);
+    await browser.mouse("mouseMoved", ...place(0.75));
+    await browser.press("ArrowLeft");
+    await browser.press("ArrowRight");
+    state = await settled(browser, state.tick);
     assert.equal(state.hash, hashAt(GOLDEN, state.tick), "hash at the tick that the pointer scrubbed to");
     console.log(`scrubbed to tick ${state.tick}: ${state.hash}, equal to the command's`);
+}
+
+// A file that is dropped with Shift is compared with the shown file.
+async function compares(browser) {
+    await drop(browser, GOLDEN, SHIFT);
+    const same = ({ name, status }) => name === basename(GOLDEN) && status.includes("identical up to tick");
+    const { verdict } = await browser.until(STATE, same, "identical");
+    console.log(`dropped with Shift: ${verdict}`);
 }
 
 // Takes a screenshot and checks that it is not blank.
@@ -174,6 +191,7 @@ async function main() {
         await look(browser, "scene.png");
         await scrubsAndMatches(browser);
         await look(browser, "golden.png");
+        await compares(browser);
         await refuses(browser);
         await look(browser, "refused.png");
 

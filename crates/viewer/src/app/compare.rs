@@ -12,6 +12,8 @@ pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
     /// Further copies of both sources, which search for the first difference. `None` when the search has ended.
     scouts: Option<[Box<dyn Source>; 2]>,
+    /// Whether only the worlds are compared. A snapshot does not contain the state of the game's own rules.
+    only_worlds: bool,
     pub(super) first: Option<First>,
     searched: u64,
 }
@@ -26,8 +28,10 @@ pub(super) struct First {
 }
 
 impl Comparison {
-    pub(super) fn new(other: Box<dyn Source>, scouts: [Box<dyn Source>; 2]) -> Self {
-        Comparison { other, scouts: Some(scouts), first: None, searched: 0 }
+    pub(super) fn new(other: Box<dyn Source>, mut scouts: [Box<dyn Source>; 2]) -> Self {
+        // The hash of a snapshot is the hash of its world. The hash of a game also includes the state of its rules.
+        let only_worlds = scouts.iter_mut().any(|scout| scout.hash() == scout.world().state_hash());
+        Comparison { other, scouts: Some(scouts), only_worlds, first: None, searched: 0 }
     }
 
     /// Continues the search by a limited number of ticks.
@@ -36,7 +40,11 @@ impl Comparison {
         let (mut left, first) = (slice_of(a.world()), a.first());
         while left > 0 {
             left -= 1;
-            if a.hash() != b.hash() {
+            let is_equal = match self.only_worlds {
+                true => a.world().state_hash() == b.world().state_hash(),
+                false => a.hash() == b.hash(),
+            };
+            if !is_equal {
                 self.first = Some(First::between(a.as_mut(), b.as_mut()));
                 self.scouts = None;
                 return;

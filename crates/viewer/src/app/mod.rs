@@ -192,15 +192,14 @@ impl App {
         let bytes: &'static [u8] = bytes.leak();
         let other = self.noted(name, self.content.open(name, bytes))?;
         let mut scouts = [self.content.open(&first, first_bytes)?, self.content.open(name, bytes)?];
-        self.message = None;
         // The search starts at the first tick that both sources have. A snapshot may start at a later tick than a
-        // replay.
+        // replay, even after its end.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
-        for scout in &mut scouts {
-            if let Err(error) = scout.seek(start) {
-                self.message = Some(format!("{}: {error}", scout.name()));
-            }
+        let reached = scouts.iter_mut().all(|scout| scout.seek(start).is_ok() && scout.tick() == start);
+        if !reached {
+            return self.noted(name, Err(OpenError::NoCommonTick { first }));
         }
+        self.message = None;
         self.comparison = Some(Comparison::new(other, scouts));
         self.follow_with_other();
         Ok(())
@@ -209,7 +208,7 @@ impl App {
     /// Shows a scene, or a message if it cannot be opened. Returns `false` if no scene has this name.
     pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
         let Some(scene) = self.content.scene(name) else { return false };
-        match (scene.open)(seed) {
+        match (scene.open)(seed, &self.content.limits) {
             Ok(source) => self.show(source),
             Err(error) => self.message = Some(format!("{name}: {error}")),
         }

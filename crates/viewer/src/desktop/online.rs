@@ -75,18 +75,19 @@ impl OnlineArgs {
             ));
         };
         let setup = setup(seed);
-        let peer = self.peer::<G>(entry, &setup, options)?;
+        let peer = self.peer::<G>(entry, name, &setup, options)?;
         let keys = viewer.players.iter().filter_map(|player| match player {
             Player::Keys(controls) => Some(controls),
             _ => None,
         });
         let controls = keys.fold(Controls::new(), |all, controls| all.with(controls));
-        Ok(Box::new(Online::new(name, setup, peer, controls).presented(viewer.presentation.clone())))
+        Ok(Box::new(Online::new(name, peer, controls).presented(viewer.presentation.clone())))
     }
 
     fn peer<G: Game>(
         &self,
         entry: &Entry,
+        scene: &str,
         setup: &G::Setup,
         options: PeerOptions,
     ) -> Result<Peer<G, Udp>, Trouble> {
@@ -114,7 +115,7 @@ impl OnlineArgs {
                 Peer::watch(setup, options, me, udp, socket_address(contact))
             }
         };
-        peer.map_err(|error| Trouble(error.to_string()))
+        peer.map_err(|error| Trouble(format!("{scene}: {error}")))
     }
 }
 

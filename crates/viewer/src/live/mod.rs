@@ -21,7 +21,7 @@ use hand::Hand;
 ///
 /// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
 /// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. The work of the
-/// replay may exceed the default limit of a verifier. The status then shows a lower bound for the verifier's argument
+/// replay may exceed the limit of a verifier. The status then shows a lower bound for the verifier's argument
 /// `--max-work`.
 ///
 /// ```
@@ -73,6 +73,10 @@ impl Live {
             acts: Vec::new(),
             note: None,
         })
+    }
+
+    pub(crate) fn limited(self, limits: &Limits) -> Self {
+        Live { recording: self.recording.limited(limits.clone()), ..self }
     }
 
     /// Returns the sandbox at the current tick.
@@ -198,10 +202,6 @@ impl Source for Live {
         let course = if self.recording.is_at_end() { "live" } else { "recorded" };
         let mut status = format!("{course} · {refused} commands refused");
         status.extend(self.note.map(|note| format!(" · {note}")));
-        let work = self.recording.work();
-        if work > Limits::default().total_work {
-            status += &format!(" · verify it with --max-work above {work}");
-        }
-        status
+        status + &self.recording.limit_hint()
     }
 }

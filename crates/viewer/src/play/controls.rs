@@ -107,8 +107,13 @@ impl<I: Default> Controls<I> {
     /// Returns the input for the next tick, and forgets the keys that went down since the last tick.
     pub(super) fn take(&mut self) -> I {
         let input = self.input();
-        self.tapped.clear();
+        self.forget_taps();
         input
+    }
+
+    /// Forgets the keys that went down since the last tick. Keys that are still down count on.
+    pub(super) fn forget_taps(&mut self) {
+        self.tapped.clear();
     }
 
     pub(super) fn is_pressed(&self) -> bool {

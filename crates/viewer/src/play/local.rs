@@ -54,6 +54,10 @@ impl<G: Game + 'static> LocalMatch<G> {
         LocalMatch { presentation, ..self }
     }
 
+    pub(crate) fn limited(self, limits: &Limits) -> Self {
+        LocalMatch { recording: self.recording.limited(limits.clone()), ..self }
+    }
+
     /// Returns the game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
@@ -103,9 +107,11 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         self.recording.game().tick_rate()
     }
 
-    /// Seeking forwards plays, also beyond the recorded ticks. Seeking backwards keeps the recording.
+    /// Seeking forwards plays, also beyond the recorded ticks. Seeking backwards keeps the recording, and forgets the
+    /// keys that were tapped.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
+            self.players.iter_mut().for_each(Seated::forget_taps);
             return self.recording.seek(tick).map_err(SourceError::of);
         }
         while self.tick() < tick {
@@ -143,11 +149,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
     fn status(&self) -> String {
         let course = if self.recording.is_at_end() { "live" } else { "recorded" };
         let own = (self.presentation.status)(self.recording.game());
-        let mut status = if own.is_empty() { course.to_owned() } else { format!("{course} · {own}") };
-        let work = self.recording.work();
-        if work > Limits::default().total_work {
-            status += &format!(" · verify it with --max-work above {work}");
-        }
-        status
+        let status = if own.is_empty() { course.to_owned() } else { format!("{course} · {own}") };
+        status + &self.recording.limit_hint()
     }
 }

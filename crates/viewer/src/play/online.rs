@@ -5,7 +5,6 @@ use std::time::Duration;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{Peer, PeerDesync, PeerError, PeerEvent, Transport};
-use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, Recording, Step};
 use lockstep2d::session::{Event as SessionEvent, Status};
 use lockstep2d::world::World;
 use lockstep2d_render::{Camera, DrawList};
@@ -15,6 +14,8 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
+/// Largest number of ticks in a frame of a peer that catches up. The window stays responsive.
+const TICKS_PER_FRAME: u32 = 64;
 /// Longest time that closing waits until the match is left.
 const LEAVE_TIME: Duration = Duration::from_secs(1);
 /// Interval of updates while closing waits.
@@ -37,7 +38,7 @@ const LEAVE_STEP: Duration = Duration::from_millis(5);
 /// let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
 /// let peer = Peer::<Sandbox, _>::host(&setup, options, PeerIdentity::random(), network.port(0))?;
 /// let mut app = App::default();
-/// app.show(Box::new(Online::new("alone", setup, peer, Controls::new())));
+/// app.show(Box::new(Online::new("alone", peer, Controls::new())));
 /// for _ in 0..60 {
 ///     app.advance(Duration::from_millis(16));
 /// }
@@ -47,13 +48,10 @@ const LEAVE_STEP: Duration = Duration::from_millis(5);
 /// ```
 pub struct Online<G: Game, T: Transport> {
     name: String,
-    setup: G::Setup,
     peer: Peer<G, T>,
     now: Duration,
     controls: Controls<G::Input>,
     presentation: Presentation<G>,
-    /// The bytes of the replay that the peer has returned so far.
-    replay: Vec<u8>,
     desync: Option<PeerDesync>,
     /// Text of the peer's last event.
     told: Option<&'static str>,
@@ -66,22 +64,15 @@ pub struct Online<G: Game, T: Transport> {
 }
 
 impl<G: Game + 'static, T: Transport> Online<G, T> {
-    /// Shows the match of a new peer. `setup` must be the setup of the peer. `controls` apply to all seats of the peer.
+    /// Shows the match of a peer. `controls` apply to all seats of the peer.
     #[must_use]
-    pub fn new(
-        name: impl Into<String>,
-        setup: G::Setup,
-        peer: Peer<G, T>,
-        controls: Controls<G::Input>,
-    ) -> Self {
+    pub fn new(name: impl Into<String>, peer: Peer<G, T>, controls: Controls<G::Input>) -> Self {
         Online {
             name: name.into(),
-            setup,
             peer,
             now: Duration::ZERO,
             controls,
             presentation: Presentation::default(),
-            replay: Vec::new(),
             desync: None,
             told: None,
             waiting: false,
@@ -108,7 +99,10 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
 
     fn go_on(&mut self) -> Result<(), PeerError> {
         self.peer.update(self.now)?;
-        while self.peer.is_due() {
+        for _ in 0..TICKS_PER_FRAME {
+            if !self.peer.is_due() {
+                break;
+            }
             let seats = self.peer.seats().len();
             let inputs: Vec<_> = (0..seats).map(|_| self.controls.input()).collect();
             if self.peer.advance(&inputs)? {
@@ -119,7 +113,6 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         while let Some(event) = self.peer.next_event() {
             self.note(&event);
         }
-        self.replay.extend(self.peer.take_replay());
         Ok(())
     }
 
@@ -137,20 +130,12 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         }
     }
 
-    /// Returns a replay of the blocks that the peer has returned so far. The peer is still recording, so the ticks are
-    /// played again into a second recording.
-    fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
-        if self.replay.is_empty() {
+    fn replay_so_far(&mut self) -> Result<Vec<u8>, SourceError> {
+        let file = self.peer.replay_so_far().map_err(SourceError::of)?;
+        if file.is_empty() || self.peer.confirmed() == 0 {
             return Err(SourceError("this peer has no replay of the match, or not yet".into()));
         }
-        let limits = Limits::default();
-        let mut raw = RawReplay::<G>::open(&self.replay, &limits).map_err(SourceError::of)?;
-        let mut recording =
-            Recording::<G>::start(&self.setup, CHECKPOINT_INTERVAL).map_err(SourceError::of)?;
-        while raw.step().map_err(SourceError::of)? == Step::Ticked {
-            recording.step(raw.inputs()).map_err(SourceError::of)?;
-        }
-        recording.finish().map_err(SourceError::of)
+        Ok(file)
     }
 
     fn news(&self) -> String {
@@ -195,6 +180,11 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
         None
     }
 
+    /// Number of final ticks, which are those in the replay.
+    fn recorded(&self) -> u64 {
+        self.peer.confirmed()
+    }
+
     fn tick_rate(&self) -> u32 {
         self.peer.game().tick_rate()
     }
@@ -230,10 +220,13 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
     fn close(&mut self) {
         self.peer.leave();
         for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {
-            // A peer that leaves needs further updates, to tell the other peers.
-            let is_closed = matches!(self.peer.status(), None | Some(Status::Closed));
-            if is_closed || self.ended.is_some() || self.advance(LEAVE_STEP).is_err() {
+            if matches!(self.peer.status(), None | Some(Status::Closed)) {
                 break;
+            }
+            // A peer that leaves needs further updates to tell the other peers, also after an error.
+            let _shown_before = self.advance(LEAVE_STEP);
+            if self.ended.is_some() {
+                let _same_error = self.peer.update(self.now);
             }
             std::thread::sleep(LEAVE_STEP);
         }

@@ -95,6 +95,12 @@ impl<G: Game> Seated<G> {
         matches!(self, Seated::Keys(controls) if controls.is_pressed())
     }
 
+    pub(super) fn forget_taps(&mut self) {
+        if let Seated::Keys(controls) = self {
+            controls.forget_taps();
+        }
+    }
+
     pub(super) fn keys(&self) -> impl Iterator<Item = Key> {
         let controls = match self {
             Seated::Keys(controls) => Some(controls),

@@ -36,6 +36,8 @@ pub(crate) struct Recording<G: Game> {
     weigh: fn(&G, &G::Save) -> usize,
     /// State after the last recorded tick. `None` if the game is at this tick.
     end: Option<G::Save>,
+    /// Limits of a verifier of the replay.
+    limits: Limits,
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -44,7 +46,7 @@ pub(crate) enum RecordingError {
         tick: u64,
         ticks: u64,
     },
-    /// [`Game::work`] of the tick exceeds the default limit of a verifier.
+    /// [`Game::work`] of the tick exceeds the limit of a verifier.
     TooMuch,
     Record(RecordError),
     Log(InputError),
@@ -68,8 +70,14 @@ impl<G: Game> Recording<G> {
             history: History::new(game.save(), SAVES_BYTES),
             weigh,
             end: None,
+            limits: Limits::default(),
             game,
         })
+    }
+
+    /// Sets the limits of a verifier of the replay.
+    pub(crate) fn limited(self, limits: Limits) -> Self {
+        Recording { limits, ..self }
     }
 
     pub(crate) fn game(&self) -> &G {
@@ -89,16 +97,21 @@ impl<G: Game> Recording<G> {
         self.tick == self.ticks()
     }
 
-    /// Work units of all recorded ticks by [`Game::work`]. A verifier also counts the work of the setup, and work that
-    /// becomes known only while a tick runs.
-    pub(crate) fn work(&self) -> u64 {
-        self.work.last().copied().unwrap_or(0)
+    /// End of a status line: the limit that a verifier needs, if it exceeds the limit of this recording. The work is a
+    /// lower bound. A verifier also counts the work of the setup, and work that becomes known only while a tick runs.
+    pub(crate) fn limit_hint(&self) -> String {
+        match self.work.last() {
+            Some(&work) if work > self.limits.total_work => {
+                format!(" · verify it with --max-work above {work}")
+            }
+            _ => String::new(),
+        }
     }
 
     /// Plays and records the next tick. First drops the recorded ticks after the current one.
     pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), RecordingError> {
         let work = self.game.work(inputs);
-        if work > Limits::default().tick_work {
+        if work > self.limits.tick_work {
             return Err(RecordingError::TooMuch);
         }
         if !self.is_at_end() {
@@ -154,9 +167,10 @@ impl<G: Game> Recording<G> {
         let here = self.tick;
         self.game.load(end);
         self.tick = self.ticks();
-        let file = recorder.finish(&self.game).map_err(RecordingError::Record)?;
+        let file = recorder.finish(&self.game).map_err(RecordingError::Record);
+        // Goes back also after an error: `end` is for a game that is at an earlier tick.
         self.seek(here)?;
-        Ok(file)
+        file
     }
 
     fn replay_towards(&mut self, target: u64) -> Result<(), RecordingError> {

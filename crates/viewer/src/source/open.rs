@@ -28,6 +28,11 @@ pub enum OpenError {
     File(EvidenceError),
     /// The divergence report contains no replay.
     EmptyReport,
+    /// The file cannot be compared with the file that is shown, because no tick is in both.
+    NoCommonTick {
+        /// Name of the file that is shown.
+        first: String,
+    },
 }
 
 impl fmt::Display for OpenError {
@@ -38,6 +43,7 @@ impl fmt::Display for OpenError {
                 write!(f, "a replay of {rules:?}: this viewer shows {shown:?}")
             }
             OpenError::File(error) => error.fmt(f),
+            OpenError::NoCommonTick { first } => write!(f, "no tick is both in this file and in {first}"),
             OpenError::EmptyReport => write!(f, "the report contains no replay: there is nothing to play"),
         }
     }

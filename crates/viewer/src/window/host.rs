@@ -35,14 +35,15 @@ impl Host {
             let error = io::Error::other(app.message().unwrap_or("nothing to save"));
             return Err(WindowError::File { path: path.display().to_string(), error });
         }
-        self.fulfil(requests)
+        self.fulfil(app, requests)
     }
 
     fn save(&self, app: &mut App) -> Result<(), WindowError> {
-        self.fulfil(app.take_requests())
+        let requests = app.take_requests();
+        self.fulfil(app, requests)
     }
 
-    fn fulfil(&self, requests: Vec<Request>) -> Result<(), WindowError> {
+    fn fulfil(&self, app: &mut App, requests: Vec<Request>) -> Result<(), WindowError> {
         for Request::Save { name, bytes } in requests {
             let named = self.output.clone().unwrap_or_else(|| name.clone().into());
             let failed = |error| WindowError::File { path: named.display().to_string(), error };
@@ -50,7 +51,12 @@ impl Host {
                 Some(path) => replace(path, &bytes).map(|()| path.clone()),
                 None => save_as_new(&name, &bytes),
             };
-            eprintln!("{} written", path.map_err(failed)?.display());
+            let path = path.map_err(failed)?;
+            eprintln!("{} written", path.display());
+            // The message names the file that was asked for.
+            if let Some(rest) = app.message().and_then(|message| message.strip_prefix(&name)) {
+                app.tell(format!("{}{rest}", path.display()));
+            }
         }
         Ok(())
     }
@@ -75,7 +81,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return fs::write(path, bytes);
     }
     let beside = write_beside(path, bytes)?;
-    fs::rename(beside, path)
+    fs::rename(&beside, path).inspect_err(|_| remove(&beside))
 }
 
 /// Writes a new file. If `name` exists, a number is added to the name.
@@ -90,7 +96,7 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
             break;
         }
     }
-    fs::remove_file(beside)?;
+    remove(&beside);
     outcome
 }
 
@@ -99,7 +105,7 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
 fn link_or_write(file: &Path, name: &Path, bytes: &[u8]) -> io::Result<()> {
     match fs::hard_link(file, name) {
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
-            File::create_new(name)?.write_all(bytes)
+            fill(File::create_new(name)?, name, bytes)
         }
         outcome => outcome,
     }
@@ -110,17 +116,21 @@ fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let mut beside = path.to_path_buf().into_os_string();
     beside.push(format!(".{}.unfinished", std::process::id()));
     let beside = PathBuf::from(beside);
-    let written = File::create(&beside).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
-    });
-    match written {
-        Ok(()) => Ok(beside),
-        Err(error) => {
-            let _ = fs::remove_file(&beside);
-            Err(error)
-        }
-    }
+    fill(File::create(&beside)?, &beside, bytes)?;
+    Ok(beside)
+}
+
+/// Writes all bytes to a new file at a path. After an error, no part of the file is left.
+fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let written = file.write_all(bytes).and_then(|()| file.sync_all());
+    // Windows removes no open file.
+    drop(file);
+    written.inspect_err(|_| remove(path))
+}
+
+/// Removes a file that is no longer needed. A file that stays does no harm.
+fn remove(path: &Path) {
+    let _removed = fs::remove_file(path);
 }
 
 #[cfg(test)]
@@ -139,6 +149,10 @@ mod tests {
         replace(&first, b"three").unwrap();
         assert_eq!(fs::read(&first).unwrap(), b"three");
         assert!(save_as_new(folder.join("none/a.replay").to_str().unwrap(), b"").is_err());
+        // A file that was opened for reading cannot be written, like a file on a full disk.
+        fs::write(folder.join("cut.replay"), b"").unwrap();
+        let full = File::open(folder.join("cut.replay")).unwrap();
+        assert!(fill(full, &folder.join("cut.replay"), b"bytes").is_err());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "no unfinished file is left");
         fs::remove_dir_all(&folder).unwrap();
     }

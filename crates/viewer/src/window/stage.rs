@@ -49,8 +49,11 @@ impl Stage {
         let renderer = match Renderer::new() {
             Ok(renderer) => renderer,
             Err(error) => {
+                let error = WindowError::Graphics(error);
+                // A page has no other output. On a desktop, the program prints the error when the window is closed.
+                #[cfg(target_arch = "wasm32")]
                 miniquad::error!("{}", error);
-                *outcome.borrow_mut() = Err(WindowError::Graphics(error));
+                *outcome.borrow_mut() = Err(error);
                 window::order_quit();
                 return Box::new(Nothing);
             }

@@ -1,7 +1,9 @@
 //! Comparing two replays finds and shows their first difference.
 
 use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::Vec2;
+use lockstep2d::replay::{Limits, VerifiedReplay};
 use lockstep2d::world::Command;
 use lockstep2d_viewer::{Event, Key};
 
@@ -52,4 +54,42 @@ fn the_same_replay_twice_has_no_difference() {
     frames(&mut app, 500);
     assert!(app.report().status.contains("identical up to tick 200"), "{}", app.report());
     assert!(texts(&mut app).iter().any(|line| line.contains("identical up to tick 200")));
+}
+
+/// Snapshot of a replay's world at a tick.
+fn snapshot(file: &[u8], tick: u64) -> Vec<u8> {
+    let mut replay = VerifiedReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
+    while replay.tick() < tick {
+        replay.step().unwrap();
+    }
+    replay.game().world().to_bytes()
+}
+
+#[test]
+fn a_snapshot_and_a_replay_are_compared_by_their_worlds() {
+    let file = replay("box_stack", 200, |_, _| vec![]);
+    let later = snapshot(&file, 60);
+    for [first, second] in [[&file, &later], [&later, &file]] {
+        let mut app = app_of(first.clone());
+        app.compare_with("second", second.clone()).unwrap();
+        frames(&mut app, 500);
+        assert!(app.report().status.contains("identical up to tick 200"), "{}", app.report());
+    }
+    let mut app = app_of(pushed());
+    app.compare_with("world.snapshot", later).unwrap();
+    frames(&mut app, 500);
+    assert!(app.report().status.contains("first difference at tick 91: body "), "{}", app.report());
+}
+
+#[test]
+fn files_without_a_common_tick_are_not_compared() {
+    let file = replay("box_stack", 200, |_, _| vec![]);
+    let later = snapshot(&file, 60);
+    let mut app = app_of(replay("box_stack", 30, |_, _| vec![]));
+    let refused = app.compare_with("world.snapshot", later).unwrap_err();
+    assert_eq!(refused.to_string(), "no tick is both in this file and in test.replay");
+    assert_eq!(app.report().status, format!("world.snapshot: {refused}"));
+    frames(&mut app, 10);
+    press(&mut app, Key::Right);
+    assert!(!app.report().status.contains("difference"), "{}", app.report());
 }

@@ -7,4 +7,5 @@ mod compare;
 mod files;
 mod live;
 mod look;
+mod play;
 mod travel;

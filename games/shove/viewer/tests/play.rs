@@ -175,7 +175,7 @@ fn host_and_guest([ours, theirs]: [Setup; 2]) -> [Guest; 2] {
     let host = Peer::host(&ours, options, me(1), network.port(0)).unwrap();
     let guest = Peer::join(&theirs, options, me(2), network.port(1), Network::address(0)).unwrap();
     let both = || left().with(&right());
-    [Online::new("shove", ours, host, both()), Online::new("shove", theirs, guest, both())]
+    [Online::new("shove", host, both()), Online::new("shove", guest, both())]
 }
 
 #[test]
