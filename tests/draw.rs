@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{BodyDef, BodyKind, Geometry, Name, Polygon, ShapeDef, WorldError};
 use lockstep2d::draw::{
-    ContactProximity, Form, Frame, Layers, Legend, Primitive, Style, Subject, View, fit, primitives, svg,
+    Bar, ContactProximity, Form, Frame, Layers, Legend, Primitive, Style, Subject, View, fit, primitives, svg,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
@@ -359,4 +359,15 @@ fn check_text(text: &str) {
         assert!(known, "{text}");
     }
     assert!(!text.chars().any(|c| c < ' ' && c != '\n'), "{text:?}");
+}
+
+/// The longest bar that numbers represent is 2 000 000 km long.
+#[test]
+fn the_label_of_a_bar_is_its_length() {
+    let bars = [fx!(0.004), fx!(0.3), fx!(70), Fx::MAX].map(|most| Bar::up_to(|length| length <= most));
+    let bars = bars.map(|bar| bar.map(|bar| (bar.length.round().to_num::<i64>(), bar.label)));
+    let metres = |length: i64, label: &str| Some((length, label.to_string()));
+    let expected = [metres(0, "2 mm"), metres(0, "200 mm"), metres(50, "50 m")];
+    assert_eq!(bars[..3], expected);
+    assert_eq!(bars[3], metres(2_000_000_000, "2000000000 m"));
 }

@@ -1,4 +1,5 @@
 use alloc::boxed::Box;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use super::finding::{Fault, Finding};
@@ -116,9 +117,8 @@ impl<'s, G: Game> Checker<'s, G> {
         let played = play_within(straight, inputs, &options.limits, work, |game, inputs| {
             step(game, inputs, options.phases)
         });
-        self.phases = played.map_err(|verdict| {
-            Box::new(Finding::new(Variant::Recorded, Fault::Verdict(verdict), self.tick))
-        })?;
+        self.phases = played
+            .map_err(|verdict| Finding::in_next(Variant::Recorded, Fault::Verdict(verdict), self.tick))?;
         self.hash = self.straight.state_hash();
         self.tick += 1;
         let now = Now {
@@ -139,13 +139,25 @@ impl<'s, G: Game> Checker<'s, G> {
     /// # Errors
     /// The first [`Finding`].
     pub fn finish(mut self) -> Result<Checked, Box<Finding>> {
+        self.end()
+    }
+
+    /// Does the work of [`Checker::finish`]. The ticks that it simulates count in [`Checker::simulated`].
+    pub(super) fn end(&mut self) -> Result<Checked, Box<Finding>> {
         self.begin()?;
         let mut replicas = core::mem::take(&mut self.replicas);
-        let now = Now { claims: self.straight.claims(), ..self.now(&[]) };
-        replicas.iter_mut().try_for_each(|replica| replica.finish(&now))?;
-        let variants = replicas.iter().map(|replica| replica.variant).collect();
-        let simulated = self.tick + replicas.iter().map(|replica| replica.steps).sum::<u64>();
-        Ok(Checked { ticks: self.tick, hash: self.hash, variants, simulated })
+        let nothing = self.nothing();
+        let now = Now { claims: self.straight.claims(), ..self.now(&nothing) };
+        let ended = replicas.iter_mut().try_for_each(|replica| replica.finish(&now));
+        self.replicas = replicas;
+        ended?;
+        let variants = self.replicas.iter().map(|replica| replica.variant).collect();
+        Ok(Checked { ticks: self.tick, hash: self.hash, variants, simulated: self.simulated() })
+    }
+
+    /// The default input of each player, where no tick has been played.
+    fn nothing(&self) -> Vec<G::Input> {
+        vec![G::Input::default(); self.straight.players() as usize]
     }
 
     fn now<'a>(&'a self, inputs: &'a [G::Input]) -> Now<'a, G> {
@@ -163,9 +175,10 @@ impl<'s, G: Game> Checker<'s, G> {
         let variants = variants
             .into_iter()
             .filter(|variant| *variant != Variant::Recorded && (has_world || !variant.needs_world()));
+        let nothing = self.nothing();
         let mut replicas = Vec::new();
         for variant in variants {
-            let now = self.now(&[]);
+            let now = self.now(&nothing);
             replicas.push(Replica::begin(variant, &now)?);
         }
         self.replicas = replicas;
@@ -193,8 +206,6 @@ pub(super) fn another<G: Game>(setup: &G::Setup, variant: Variant, tick: u64) ->
 
 #[cfg(test)]
 mod tests {
-    use alloc::vec;
-
     use super::*;
     use crate::lockstep::{Sandbox, SandboxSetup};
     use crate::world::Phase;

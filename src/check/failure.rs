@@ -49,8 +49,8 @@ pub struct Failure {
     /// The finding in the minimised replay.
     pub minimised: Finding,
     /// Replay file with the fewest ticks and inputs that the search found within the budget.
-    /// [`check_replay`](super::check_replay) reproduces the failure, unless the failure is random. The checkpoints of
-    /// the replay of a random failure may be wrong as well.
+    /// [`check_replay`](super::check_replay) reproduces the failure, unless the failure is random or a replay cannot
+    /// represent the setup, inputs or claims. The checkpoints of the replay of a random failure may be wrong as well.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,

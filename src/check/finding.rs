@@ -1,3 +1,4 @@
+use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -99,7 +100,7 @@ pub struct Finding {
     /// Number of ticks after which the fault exists.
     pub tick: u64,
     /// Number of ticks played when the fault was detected. May exceed `tick` for [`Variant::RolledBack`] and
-    /// [`Variant::ByteSwapped`].
+    /// [`Variant::ByteSwapped`]. Contains the tick that exceeded a limit or could not be recorded.
     pub played: u64,
     /// The first phase whose digest differs, if phases are compared. `None` also if the states differed before the
     /// step.
@@ -114,6 +115,11 @@ pub struct Finding {
 impl Finding {
     pub(super) fn new(variant: Variant, fault: Fault, tick: u64) -> Self {
         Finding { variant, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
+    }
+
+    /// A fault that refuses the tick after `tick` ticks. The inputs of the refused tick are needed to reproduce it.
+    pub(super) fn in_next(variant: Variant, fault: Fault, tick: u64) -> Box<Self> {
+        Box::new(Finding { played: tick + 1, ..Finding::new(variant, fault, tick) })
     }
 
     pub(super) fn with_saves<S: Serialize>(self, a: &S, b: &S) -> Self {
@@ -144,7 +150,7 @@ impl Finding {
                  stale in a game that has already run"
             }
             (_, Fault::Verdict(Verdict::LimitExceeded { .. })) => "`work` returns more than the limits allow",
-            (_, Fault::Verdict(_) | Fault::Unrecordable(_)) => {
+            (_, Fault::Verdict(_) | Fault::Unrecordable(_)) | (Variant::Recorded, _) => {
                 "claims that share a name or change between calls, or a setup or input that does not survive \
                  its encoding"
             }

@@ -3,11 +3,12 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use super::checker::{Checked, Checker};
+use super::checker::{Checked, Checker, another};
 use super::failure::Failure;
 use super::finding::{Fault, Finding};
 use super::log::{Inputs, Log};
 use super::options::{CheckOptions, Depths, Variant};
+use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
@@ -31,30 +32,42 @@ fn run_counted<G: Game>(
     let refused = |why| Box::new(Finding::new(Variant::Again, Fault::Refused { why }, 0));
     let mut checker = Checker::<G>::new(setup, options).map_err(|error| refused(error.why))?;
     let ticks = log.ticks.iter().zip(0..options.to).map(|(inputs, _)| inputs);
-    let played = { ticks }.try_for_each(|inputs| checker.step(inputs));
+    let checked = { ticks }.try_for_each(|inputs| checker.step(inputs)).and_then(|()| checker.end());
     *simulated = simulated.saturating_add(checker.simulated());
-    played?;
-    let mut checked = checker.finish()?;
+    let mut checked = checked?;
     if options.variants.contains(&Variant::Recorded) {
         *simulated = simulated.saturating_add(2 * checked.ticks);
-        record(setup, log, options)?;
+        record(setup, log, options, checked.hash)?;
         checked.variants.push(Variant::Recorded);
     }
     Ok(checked)
 }
 
-fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<(), Box<Finding>> {
+/// Records and verifies the log. `hash` is the last state hash of the reference run.
+fn record<G: Game>(
+    setup: &G::Setup,
+    log: &Log<G>,
+    options: &CheckOptions,
+    hash: StateHash,
+) -> Result<(), Box<Finding>> {
     let found = |fault, tick| Err(Box::new(Finding::new(Variant::Recorded, fault, tick)));
     let mut recording = match Recording::<G>::start(setup, log.interval) {
         Ok(recording) => recording,
         Err(error) => return found(Fault::Unrecordable(error), 0),
     };
+    // The recorded game has the setup as a verifier decodes it.
+    if another::<G>(setup, Variant::Recorded, 0)?.state_hash() != recording.game().state_hash() {
+        return found(Fault::Hash, 0);
+    }
     for (inputs, tick) in log.ticks.iter().zip(0..options.to) {
         if let Err(error) = recording.step(inputs) {
-            return found(Fault::Unrecordable(error), tick);
+            return Err(Finding::in_next(Variant::Recorded, Fault::Unrecordable(error), tick));
         }
     }
     let ticks = recording.ticks();
+    if recording.game().state_hash() != hash {
+        return found(Fault::Hash, ticks);
+    }
     let file = match recording.finish() {
         Ok(file) => file,
         Err(error) => return found(Fault::Unrecordable(error), ticks),
@@ -87,6 +100,9 @@ pub(super) fn minimise<G: Game>(
         .into_iter()
         .find_map(|variant| search.begin(log, variant, &finding))
         .unwrap_or_else(|| (finding.clone(), Attempt { ticks: log.ticks.clone(), finding, failed: 0 }));
+    // The first runs only measure how often the log fails. They take as long as a check, and long logs would leave
+    // nothing of the budget.
+    search.spent = 0;
     let best = if search.need > 0 { search.shrink(log, best) } else { best };
     let log = log.of(best.ticks);
     Failure {

@@ -165,8 +165,8 @@ pub struct CheckOptions {
     /// Maximum number of runs of each shortened log, at least 1, to measure how often it fails. A log that fails
     /// randomly is shortened only while it fails as often as before.
     pub repeats: u32,
-    /// Number of simulated ticks after which a failing log is not minimised further. With 0, the log is only cut after
-    /// the tick at which the fault was detected.
+    /// Number of simulated ticks after which a failing log is not minimised further, without the runs that measure how
+    /// often the log fails. With 0, the log is only cut after the tick at which the fault was detected.
     pub budget: u64,
     /// Limits of the reference run, and of the replays that are read and verified.
     pub limits: Limits,

@@ -70,7 +70,7 @@ impl<G: Game> Past<G> {
         let start = &self.moments[first];
         if guess != Guess::Right {
             let guessed = match guess {
-                Guess::Held if !start.inputs.is_empty() => start.inputs.clone(),
+                Guess::Held => start.inputs.clone(),
                 _ => vec![G::Input::default(); now.inputs.len()],
             };
             game.load(&start.save);

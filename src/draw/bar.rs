@@ -22,12 +22,14 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// The longest fitting bar of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm fits.
+    /// The longest fitting bar of 1, 2 or 5 times a power of ten millimetres, at most 2 000 000 km, or `None` if not even
+    /// 1 mm fits.
     #[must_use]
     pub fn up_to(fits: impl Fn(Fx) -> bool) -> Option<Self> {
         let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));
         let metres = |millimetres: i64| ratio(millimetres, 1000);
-        let length = lengths.take_while(|&length| fits(metres(length))).last()?;
+        let possible = |length: Fx| length < Fx::MAX && fits(length);
+        let length = lengths.take_while(|&length| possible(metres(length))).last()?;
         let label = if length < 1000 { format!("{length} mm") } else { format!("{} m", length / 1000) };
         Some(Bar { length: metres(length), label })
     }

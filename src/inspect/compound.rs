@@ -3,7 +3,7 @@ use alloc::string::String;
 use serde::Serialize;
 use serde::ser;
 
-use super::serializer::{Collector, InspectError, key};
+use super::serializer::{Collector, InspectError};
 use super::value::Value;
 
 /// The parts of a list, map, struct or variant that is being collected.
@@ -39,12 +39,9 @@ impl<'a> Compound<'a> {
         let Some(fraction_bits) = self.fixed else {
             return self.collector.named(name, value);
         };
-        let bits = super::fields(value)?.first().and_then(|field| field.value.bits());
-        match bits {
-            Some(bits) => self.collector.push(Value::Fixed { bits, fraction_bits }),
-            // A number of more than 127 bits, or another struct whose name begins with `FixedI` or `FixedU`.
-            None => self.collector.named(name, value)?,
-        }
+        let before = self.collector.count();
+        self.collector.named(name, value)?;
+        self.collector.join_fixed(before, fraction_bits);
         Ok(())
     }
 
@@ -108,7 +105,7 @@ impl ser::SerializeMap for Compound<'_> {
     type Error = InspectError;
 
     fn serialize_key<T: Serialize + ?Sized>(&mut self, name: &T) -> Result<(), InspectError> {
-        self.key = key(name)?;
+        self.key = self.collector.key(name)?;
         Ok(())
     }
 

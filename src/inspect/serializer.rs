@@ -97,6 +97,28 @@ impl Collector {
         result
     }
 
+    /// Converts a map key to text: the values of its fields, separated by commas. The depth of the map counts.
+    pub(super) fn key<T: Serialize + ?Sized>(&self, key: &T) -> Result<String, InspectError> {
+        let mut collector = Collector { depth: self.depth, ..Collector::default() };
+        collector.nested(key)?;
+        let parts = collector.fields.into_iter().map(|field| match field.value {
+            Value::Text(text) => text,
+            value => value.to_string(),
+        });
+        Ok(parts.collect::<Vec<_>>().join(", "))
+    }
+
+    /// Replaces the field of the bits of a fixed-point number by the number. A number of more than 127 bits, and the
+    /// fields of another struct whose name begins with `FixedI` or `FixedU`, remain.
+    pub(super) fn join_fixed(&mut self, before: usize, fraction_bits: Option<u32>) {
+        if let [Field { value, path, .. }] = &mut self.fields[before..]
+            && let Some(bits) = value.bits()
+        {
+            *value = Value::Fixed { bits, fraction_bits };
+            path.clone_from(&self.path);
+        }
+    }
+
     fn within<T: Serialize + ?Sized>(
         &mut self,
         extend: impl FnOnce(&mut String),
@@ -128,15 +150,6 @@ fn push_name(path: &mut String, name: &str) {
         path.push('.');
     }
     path.push_str(name);
-}
-
-/// Converts a map key to text: the values of its fields, separated by commas.
-pub(super) fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, InspectError> {
-    let parts = super::fields(key)?.into_iter().map(|field| match field.value {
-        Value::Text(text) => text,
-        value => value.to_string(),
-    });
-    Ok(parts.collect::<Vec<_>>().join(", "))
 }
 
 macro_rules! integers {

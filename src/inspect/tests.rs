@@ -181,3 +181,23 @@ fn depth_is_limited() {
         chain = *next;
     }
 }
+
+/// Structs that look like fixed-point numbers, and keys of maps, count as levels. Each level is serialized once.
+#[test]
+fn depth_is_limited_in_structs_and_keys_of_every_name() {
+    #[derive(Serialize)]
+    struct FixedIcon {
+        child: Option<alloc::boxed::Box<FixedIcon>>,
+    }
+    #[derive(PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    struct Key(BTreeMap<Key, u8>);
+    let icon = |levels| {
+        (1..levels).fold(FixedIcon { child: None }, |icon, _| FixedIcon { child: Some(icon.into()) })
+    };
+    let key = |levels| (1..levels).fold(Key(BTreeMap::new()), |key, _| Key(BTreeMap::from([(key, 1)])));
+    let deep = |error: InspectError| error.why.contains("deep");
+    assert_eq!(lines(&icon(40)), [alloc::format!("{} = some none", ["child"; 40].join("."))]);
+    assert!(fields(&icon(5_000)).is_err_and(deep));
+    assert_eq!(of(&key(40)).len(), 1);
+    assert!(fields(&key(5_000)).is_err_and(deep));
+}

@@ -26,6 +26,7 @@
 
 mod error;
 mod event;
+mod files;
 mod input_slot;
 #[cfg(feature = "std")]
 mod network;

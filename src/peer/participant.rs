@@ -4,7 +4,7 @@ use core::fmt;
 use core::time::Duration;
 
 use super::error::PeerError;
-use super::event::{PeerDesync, PeerEnd, PeerEvent};
+use super::event::{PeerDesync, PeerEvent};
 use super::input_slot::InputSlot;
 use super::options::{PeerIdentity, PeerOptions};
 use super::parameters::PeerParameters;
@@ -36,8 +36,8 @@ const PACKETS_PER_UPDATE: usize = 4096;
 /// ```
 pub struct Peer<G: Game, T> {
     transport: T,
-    endpoint: Endpoint,
-    simulation: Simulation<G>,
+    pub(super) endpoint: Endpoint,
+    pub(super) simulation: Simulation<G>,
     parameters: PeerParameters,
     slot: InputSlot,
     now: u64,
@@ -90,7 +90,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         transport: T,
         contact: Address,
     ) -> Result<Self, PeerError> {
-        let role = Role::Player { seats: options.seats.max(1) };
+        let options = PeerOptions { seats: options.seats.max(1), ..options };
+        let role = Role::Player { seats: options.seats };
         Self::new(setup, options, me, transport, Entry::Join(role, contact))
     }
 
@@ -372,46 +373,5 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// The transport.
     pub fn transport_mut(&mut self) -> &mut T {
         &mut self.transport
-    }
-
-    /// This peer's report of a desync, as the bytes of a file, for [`compare`](crate::report::compare()).
-    ///
-    /// # Errors
-    /// [`PeerError`] if the states for the report are not kept.
-    pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, PeerError> {
-        let theirs = self.endpoint.session().map_or(0, |session| session.view().seats_of(desync.peer));
-        let players = self.simulation.game.players();
-        let hash = |seat: u32| (theirs >> seat & 1 == 1).then_some(desync.theirs);
-        let hashes = (0..players).map(hash).collect();
-        let seats = self.seats();
-        Ok(self.simulation.report(desync.tick, seats, hashes)?.to_bytes())
-    }
-
-    /// Takes the finished bytes of the replay, to be appended to its file. A peer that joined after the first tick has
-    /// no replay.
-    #[must_use]
-    pub fn take_replay(&mut self) -> Vec<u8> {
-        // Before the initial state has arrived, it is unknown whether this peer has a replay.
-        if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
-    }
-
-    /// Returns a complete replay of the ticks that are final so far, with the bytes that have been taken. Recording goes
-    /// on. Empty if this peer has no replay.
-    ///
-    /// # Errors
-    /// [`PeerError`] if the state after the last final tick is not kept, or the replay cannot be finished.
-    pub fn replay_so_far(&mut self) -> Result<Vec<u8>, PeerError> {
-        if self.endpoint.session().is_some() { self.simulation.replay_so_far() } else { Ok(Vec::new()) }
-    }
-
-    /// Ends the replay after the last final tick, and returns the rest of the replay and the game. First leave or end
-    /// the match, and call [`update`](Peer::update) until [`Status::Closed`].
-    ///
-    /// # Errors
-    /// [`PeerError`] if the replay cannot be finished.
-    pub fn finish(self) -> Result<PeerEnd<G>, PeerError> {
-        let ticks = self.simulation.committed;
-        let (game, replay) = self.simulation.finish()?;
-        Ok(PeerEnd { ticks, game, replay })
     }
 }

@@ -4,6 +4,7 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
 use super::error::PeerError;
+use super::event::PeerDesync;
 use super::input_slot::InputSlot;
 use crate::codec;
 use crate::hash::StateHash;
@@ -224,15 +225,19 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. `hashes` has an entry for each seat: the hash of the other peer at its seats,
-    /// `None` at other seats.
+    /// Creates the report of a desync. Both peers count with the seats that they had at the tick that differs, because
+    /// they may have left them since.
     pub(super) fn report(
         &mut self,
-        tick: u64,
-        seats: Vec<u32>,
-        hashes: Vec<Option<StateHash>>,
+        desync: &PeerDesync,
+        session: Option<&Session>,
     ) -> Result<DesyncReport, PeerError> {
-        let players = self.game.players();
+        let (players, tick) = (self.game.players(), desync.tick);
+        let at = Tick::try_from(tick).unwrap_or(Tick::MAX);
+        let [own, theirs] = session
+            .map_or([0; 2], |session| [session.id(), desync.peer].map(|id| session.view().seats_at(id, at)));
+        let seats = (0..players).filter(|seat| own >> seat & 1 == 1).collect();
+        let hashes = (0..players).map(|seat| (theirs >> seat & 1 == 1).then_some(desync.theirs)).collect();
         let known = self.committed;
         let hash = self.read_committed(G::state_hash)?;
         let recorder = self.recorder.as_ref();

@@ -38,7 +38,7 @@ mod udp {
     use alloc::vec;
     use alloc::vec::Vec;
     use core::fmt;
-    use core::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+    use core::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, SocketAddrV6};
     use std::io;
     use std::net::{ToSocketAddrs, UdpSocket};
 
@@ -76,24 +76,30 @@ mod udp {
         }
     }
 
-    /// The [`Address`] of a socket. IPv4 addresses mapped to IPv6 become IPv4 addresses.
+    /// The [`Address`] of a socket. IPv4 addresses mapped to IPv6 become IPv4 addresses. Link-local addresses keep their
+    /// scope, the number of a network interface of this machine.
     #[must_use]
     pub fn socket_address(address: SocketAddr) -> Address {
         let port = address.port().to_le_bytes();
-        let bytes = match address.ip().to_canonical() {
-            IpAddr::V4(ip) => [&ip.octets()[..], &port].concat(),
-            IpAddr::V6(ip) => [&ip.octets()[..], &port].concat(),
+        let bytes = match (address.ip().to_canonical(), address) {
+            (IpAddr::V4(ip), _) => [&ip.octets()[..], &port].concat(),
+            (IpAddr::V6(ip), SocketAddr::V6(scoped)) if ip.is_unicast_link_local() => {
+                [&ip.octets()[..], &scoped.scope_id().to_le_bytes(), &port].concat()
+            }
+            (IpAddr::V6(ip), _) => [&ip.octets()[..], &port].concat(),
         };
         Address::new(&bytes).unwrap_or_else(Address::nowhere)
     }
 
     fn to_socket(address: &Address) -> Option<SocketAddr> {
         let (ip, port) = address.bytes().split_last_chunk::<2>()?;
-        let ip = match ip.len() {
-            4 => IpAddr::V4(Ipv4Addr::from(<[u8; 4]>::try_from(ip).ok()?)),
-            _ => IpAddr::V6(Ipv6Addr::from(<[u8; 16]>::try_from(ip).ok()?)),
-        };
-        Some(SocketAddr::new(ip, u16::from_le_bytes(*port)))
+        let port = u16::from_le_bytes(*port);
+        if let Ok(ip) = <[u8; 4]>::try_from(ip) {
+            return Some((Ipv4Addr::from(ip), port).into());
+        }
+        let (ip, scope) = ip.split_first_chunk::<16>()?;
+        let scope = if scope.is_empty() { 0 } else { u32::from_le_bytes(scope.try_into().ok()?) };
+        Some(SocketAddrV6::new(Ipv6Addr::from(*ip), port, 0, scope).into())
     }
 
     impl Udp {
@@ -157,7 +163,7 @@ mod udp {
             let plain: SocketAddr = "10.1.2.3:7000".parse().unwrap();
             let mapped: SocketAddr = "[::ffff:10.1.2.3]:7000".parse().unwrap();
             assert_eq!(socket_address(plain), socket_address(mapped));
-            for address in ["10.1.2.3:7000", "[2001:db8::1]:9"] {
+            for address in ["10.1.2.3:7000", "[2001:db8::1]:9", "[fe80::1%3]:9", "[fe80::1]:9"] {
                 let address: SocketAddr = address.parse().unwrap();
                 assert_eq!(to_socket(&socket_address(address)), Some(address));
             }

@@ -5,6 +5,11 @@ use super::view::SEATS_MAX;
 /// One millisecond in microseconds. All times of a session are in microseconds.
 pub(super) const MS: u64 = 1000;
 
+/// Largest time. Later times count as this one, so that sums of times do not overflow.
+pub(super) const TIME_MAX: u64 = u64::MAX / 2;
+/// Largest value of a field of [`Timing`], except `patience`: a day.
+const TIMING_MAX: u64 = 86_400_000 * MS;
+
 /// Largest number of ticks that may be played with guessed inputs.
 pub const GUESS_MAX: u16 = 32;
 /// Largest delay of inputs in ticks.
@@ -12,7 +17,8 @@ pub const DELAY_MAX: u16 = 60;
 /// Largest size of an input in bytes.
 pub const INPUT_BYTES_MAX: u16 = 512;
 
-/// Time limits of a session, in microseconds. `patience` must be equal for all peers of a match.
+/// Time limits of a session, in microseconds. `patience` must be equal for all peers of a match. The other limits are at
+/// most a day.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
@@ -194,6 +200,19 @@ impl Config {
             ("log_ticks", self.log_ticks.into(), (history, u32::MAX.into())),
         ] {
             check(field, value, range, 1)?;
+        }
+        let Timing { patience: _, heard, fresh, promises, ballot, linger, linger_max, step_max } =
+            self.timing;
+        for (field, value) in [
+            ("timing.heard", heard),
+            ("timing.fresh", fresh),
+            ("timing.promises", promises),
+            ("timing.ballot", ballot),
+            ("timing.linger", linger),
+            ("timing.linger_max", linger_max),
+            ("timing.step_max", step_max),
+        ] {
+            check(field, value, (0, TIMING_MAX), 1)?;
         }
         check("check_interval", self.check_interval.into(), (save_interval, u16::MAX.into()), save_interval)
     }

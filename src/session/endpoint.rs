@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::address::Address;
-use super::config::{Config, ConfigError};
+use super::config::{Config, ConfigError, TIME_MAX};
 use super::contacts::Contacts;
 use super::guests::Guests;
 use super::id::{Key, PeerId, Tick};
@@ -322,6 +322,7 @@ impl Endpoint {
 
     /// Advances to the time `now` in microseconds: sends packets that are due and handles timeouts.
     pub fn update(&mut self, now: u64) {
+        let now = now.min(TIME_MAX);
         match &mut self.phase {
             Phase::Asking { nonce, cookie, next_at } if now >= *next_at => {
                 *next_at = now + HELLO_INTERVAL;

@@ -3,6 +3,7 @@
 use alloc::boxed::Box;
 
 use super::address::Address;
+use super::config::TIME_MAX;
 use super::endpoint::{Endpoint, JoinEvent, Phase, STATE_BYTES_MAX};
 use super::guests::Guests;
 use super::id::{Key, PeerId};
@@ -16,6 +17,7 @@ use super::transfer::Download;
 impl Endpoint {
     /// Processes a received packet.
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
+        let now = now.min(TIME_MAX);
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
         // A closed endpoint does not answer. A joining peer can then ask another contact.
         if self.is_closed() {
@@ -129,7 +131,7 @@ impl Endpoint {
         let reason = if offer != self.offer {
             Some(RefusalReason::Offer)
         } else if let Phase::InMatch(session) = &mut self.phase {
-            self.guests.admit(session, sender, key, nonce)
+            self.guests.admit(now, session, sender, key, nonce)
         } else {
             Some(RefusalReason::NotReady)
         };

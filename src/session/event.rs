@@ -108,7 +108,8 @@ pub enum Event {
     },
     /// The stall of [`Event::Waiting`] is over.
     Resumed,
-    /// A peer requests a pause, or withdraws its request.
+    /// A peer with a vote requests a pause, or withdraws its request. Requests of spectators, and of players that wait
+    /// for a seat, are not reported.
     Pause {
         /// Incarnation of the peer.
         peer: PeerId,

@@ -29,8 +29,8 @@ struct Guest {
     upload: Option<Upload>,
     asked: bool,
     welcome_at: u64,
-    /// Time of the guest's last request, or of the start of its upload.
-    heard_at: Option<u64>,
+    /// Time of the guest's last request: to join, until its upload starts, and then for chunks.
+    heard_at: u64,
 }
 
 #[derive(Debug, Default)]
@@ -66,6 +66,7 @@ impl Guests {
     /// Admits a peer whose address is confirmed, or returns the reason of the refusal.
     pub(super) fn admit(
         &mut self,
+        now: u64,
         session: &mut Session,
         id: PeerId,
         key: Key,
@@ -73,7 +74,10 @@ impl Guests {
     ) -> Option<RefusalReason> {
         if let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) {
             if guest.nonce != nonce {
-                (guest.nonce, guest.upload, guest.asked, guest.heard_at) = (nonce, None, false, None);
+                (guest.nonce, guest.upload, guest.asked) = (nonce, None, false);
+            }
+            if guest.upload.is_none() {
+                guest.heard_at = now;
             }
             return None;
         }
@@ -87,7 +91,7 @@ impl Guests {
         if session.link(id).is_none() {
             return Some(RefusalReason::Full);
         }
-        self.list.push(Guest { id, nonce, upload: None, asked: false, welcome_at: 0, heard_at: None });
+        self.list.push(Guest { id, nonce, upload: None, asked: false, welcome_at: 0, heard_at: now });
         None
     }
 
@@ -113,7 +117,7 @@ impl Guests {
         let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) else { return };
         let Some(upload) = guest.upload.as_mut().filter(|upload| upload.state.hash == hash) else { return };
         guest.asked = true;
-        guest.heard_at = Some(now);
+        guest.heard_at = now;
         upload.take(now, next, window, masks);
     }
 
@@ -125,11 +129,9 @@ impl Guests {
         let mut packets = Vec::new();
         for guest in &mut self.list {
             session.attach(guest.id, None);
-            let Some(upload) = &mut guest.upload else { continue };
-            let since = *guest.heard_at.get_or_insert(now);
-            if now >= since.saturating_add(GUEST_PATIENCE) {
+            let Some(upload) = guest.upload.as_mut().filter(|_| now < guest.heard_at + GUEST_PATIENCE) else {
                 continue;
-            }
+            };
             if !guest.asked && now >= guest.welcome_at {
                 guest.welcome_at = now + WELCOME_INTERVAL;
                 let length = u64::try_from(upload.state.bytes.len()).unwrap_or(u64::MAX);
@@ -149,7 +151,7 @@ impl Guests {
         }
         self.list.retain(|guest| {
             let begun = session.has_row(guest.id);
-            let gone = guest.heard_at.is_some_and(|at| now >= at.saturating_add(GUEST_PATIENCE));
+            let gone = now >= guest.heard_at + GUEST_PATIENCE;
             if gone && !begun {
                 session.detach(guest.id);
             }

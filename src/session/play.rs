@@ -3,7 +3,7 @@
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
-use super::config::Fault;
+use super::config::{Fault, TIME_MAX};
 use super::event::Event;
 use super::id::{NEVER, PeerId, Tick};
 use super::request::{InputSize, Request, TickInputs};
@@ -139,7 +139,7 @@ impl Session {
     /// plays final ticks.
     #[must_use]
     pub fn is_due(&self, now: u64) -> bool {
-        self.pace.is_time(now) && (self.play.played < self.play_limit() || self.issues())
+        self.pace.is_time(now.min(TIME_MAX)) && (self.play.played < self.play_limit() || self.issues())
     }
 
     pub(super) fn issues(&self) -> bool {
@@ -177,6 +177,7 @@ impl Session {
         if inputs.len() != expected {
             return Err(InputSize { expected, given: inputs.len() });
         }
+        let now = now.min(TIME_MAX);
         self.look(now);
         if !self.is_due(now) {
             return Ok(false);

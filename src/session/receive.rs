@@ -1,6 +1,6 @@
 //! Received packets and the passing of time.
 
-use super::config::Fault;
+use super::config::{Fault, TIME_MAX};
 use super::event::Event;
 use super::id::{PeerId, Tick};
 use super::input_log::Added;
@@ -15,6 +15,7 @@ const INPUTS_AHEAD_MAX: Tick = 1024;
 impl Session {
     /// Advances the clocks. After a suspension, `active` advances by a limited time.
     pub(super) fn look(&mut self, now: u64) {
+        let now = now.min(TIME_MAX);
         let passed = now.saturating_sub(self.clock.now);
         self.clock.active = self.clock.active.saturating_add(passed.min(self.config.timing.step_max));
         self.clock.now = self.clock.now.max(now);

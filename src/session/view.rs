@@ -185,6 +185,20 @@ impl View {
         own.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
+    /// Bit for each seat that a peer played after `tick` ticks, or played last before them. A seat that nobody had
+    /// played by then counts for its first player.
+    pub(crate) fn seats_at(&self, id: PeerId, tick: Tick) -> u64 {
+        let (mut known, mut own) = (0, 0);
+        for span in self.spans.iter().filter(|span| span.from < span.until) {
+            let seat = bit(span.seat.into());
+            if span.from <= tick || known & seat == 0 {
+                known |= seat;
+                own = if span.owner == id { own | seat } else { own & !seat };
+            }
+        }
+        own
+    }
+
     /// The view after a change, or `None` if the change does not fit.
     pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
         let mut next = self.clone();

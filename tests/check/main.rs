@@ -9,4 +9,5 @@ mod physics;
 mod planted;
 mod random_order;
 mod sandbox;
+mod setup;
 mod toy;

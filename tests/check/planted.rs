@@ -141,6 +141,30 @@ fn what_cannot_be_recorded_or_verified_is_found() {
     assert!(matches!(found(&failure), (Variant::Recorded, Fault::Verdict(Verdict::LimitExceeded { .. }))));
 }
 
+#[test]
+fn a_replay_contains_the_tick_that_exceeds_a_limit() {
+    for budget in [0, CheckOptions::default().budget] {
+        let inputs = random_inputs::<Toy>(2, 60, &mut Rng::new(1));
+        let options = CheckOptions { budget, ..CheckOptions::default().only(&[Variant::Reloaded]) };
+        let error = check::<Toy>(&Mistake::TenthIsHuge, &inputs, &options).unwrap_err();
+        let failure = error.failure().unwrap();
+        assert_eq!((failure.ticks, failure.minimised.tick), (10, 9), "{failure}");
+        let again = check_replay::<Toy>(&failure.replay, &options);
+        assert!(matches!(again, Err(CheckError::Replay(Verdict::LimitExceeded { .. }))), "{again:?}");
+    }
+}
+
+/// The runs that measure how often a long log fails leave the budget for the minimisation.
+#[test]
+fn an_early_fault_of_a_long_log_is_minimised() {
+    let mut inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
+    inputs.resize(15_000, vec![0; 2]);
+    let options = CheckOptions::default().only(&[Variant::Reloaded]);
+    let error = check::<Toy>(&Mistake::SaveLacksField, &inputs, &options).unwrap_err();
+    let failure = error.failure().unwrap();
+    assert!(failure.ticks <= 5, "{failure}");
+}
+
 /// The reference run exceeds the limit, even if nothing is recorded.
 #[test]
 fn a_limit_that_is_exceeded_is_not_called_a_fault_of_the_recording() {

@@ -33,6 +33,8 @@ pub(crate) enum Mistake {
     ClaimsGlobal,
     Unreadable,
     WorkIsHuge,
+    /// Only the tenth tick has too much work.
+    TenthIsHuge,
 }
 
 /// Two players walk along a line and hit each other. After a hit, a player has to cool down.
@@ -146,9 +148,8 @@ impl Game for Toy {
     }
 
     fn step(&mut self, pads: &[Pad]) {
-        for player in 0..2 {
+        for (player, &pad) in pads.iter().enumerate() {
             self.state.cooldown[player] = self.state.cooldown[player].saturating_sub(1);
-            let pad = pads.get(player).copied().unwrap_or_default();
             let variant = i64::from(pad & 1) - i64::from(pad >> 1 & 1);
             self.state.places[player] = (self.state.places[player] + variant).clamp(-9, 9);
             self.total = match self.has(Mistake::LoadKeepsCache) {
@@ -199,11 +200,13 @@ impl Game for Toy {
         }
     }
 
-    fn work(&self, _: &[Pad]) -> u64 {
+    fn work(&self, pads: &[Pad]) -> u64 {
+        assert_eq!(pads.len(), 2, "expected an input for each player");
         self.polls.set(self.polls.get() + 1);
         match self.mistake {
             Mistake::WorkCounts => self.polls.get().into(),
             Mistake::WorkIsHuge => u64::MAX,
+            Mistake::TenthIsHuge if self.state.tick == 9 => u64::MAX,
             _ => 1,
         }
     }

@@ -7,6 +7,7 @@ mod presses;
 mod pushers;
 #[cfg(feature = "sealed")]
 mod sealed;
+mod seats;
 mod so_far;
 mod start;
 

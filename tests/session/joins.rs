@@ -281,3 +281,48 @@ fn seats_and_offers_that_do_not_exist_are_errors() {
     let identity = Identity { offer: vec![1; 513], ..identity(0) };
     assert!(Endpoint::join(config(), identity, Role::Spectator, address(1)).is_err());
 }
+
+/// Asks a host to join until it answers with a challenge and takes the cookie back. Returns a refusal.
+fn ask(host: &mut Endpoint, guest: &mut Endpoint, number: u8, now: u64) -> Option<JoinEvent> {
+    guest.update(now);
+    for _ in 0..2 {
+        while let Some((_, bytes)) = guest.next_packet() {
+            host.receive(now, address(number), &bytes);
+        }
+        host.update(now);
+        while let Some((to, bytes)) = host.next_packet() {
+            if to == address(number) {
+                guest.receive(now, address(1), &bytes);
+            }
+        }
+        guest.update(now);
+    }
+    guest.next_event()
+}
+
+/// The program of the host never answers `wants_state`.
+#[test]
+fn guests_that_wait_for_a_state_and_go_make_room_for_others() {
+    let guest = |number: u8| {
+        let role = Role::Spectator;
+        Endpoint::join(config(), identity(usize::from(number)), role, address(1)).expect("valid")
+    };
+    let mut host = Endpoint::host(config(), identity(0), 1).expect("valid");
+    for number in 2..66 {
+        assert_eq!(ask(&mut host, &mut guest(number), number, S), None);
+    }
+    let mut late = guest(66);
+    let full = ask(&mut host, &mut late, 66, S);
+    assert!(matches!(full, Some(JoinEvent::Refused { reason: RefusalReason::Full, .. })), "{full:?}");
+    // A guest that continues to ask stays.
+    let mut patient = guest(2);
+    for now in (S..12 * S).step_by(200_000) {
+        assert_eq!(ask(&mut host, &mut patient, 2, now), None);
+        assert!(host.wants_state());
+    }
+    for number in 67..130 {
+        assert_eq!(ask(&mut host, &mut guest(number), number, 12 * S), None);
+    }
+    host.update(18 * S);
+    assert!(!host.wants_state());
+}

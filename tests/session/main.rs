@@ -20,6 +20,7 @@ mod pace;
 mod sim;
 mod stories;
 mod storm;
+mod times;
 mod without_players;
 
 use std::sync::atomic::{AtomicU64, Ordering};
