@@ -1,12 +1,71 @@
 //! A peer that cannot continue.
 
+use std::cell::Cell;
 use std::time::Duration;
 
-use lockstep2d::peer::{Network, Peer, PeerError, PeerOptions, Port, Transport};
-use lockstep2d::session::Address;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::peer::{
+    LinkConditions, Network, Peer, PeerError, PeerEvent, PeerIdentity, PeerOptions, Port, Transport,
+};
+use lockstep2d::session::{Address, Event};
+use serde::{Deserialize, Serialize};
 
-use super::pushers::Setup;
-use super::{Pushers, Table};
+thread_local! {
+    /// Whether inputs change when they are decoded.
+    static BROKEN: Cell<bool> = const { Cell::new(false) };
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(from = "u8", into = "u8")]
+struct Key(u8);
+
+impl From<u8> for Key {
+    fn from(byte: u8) -> Self {
+        Key(byte + u8::from(BROKEN.get()))
+    }
+}
+
+impl From<Key> for u8 {
+    fn from(Key(byte): Key) -> Self {
+        byte
+    }
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Ticks(u64);
+
+impl Game for Ticks {
+    type Setup = ();
+    type Input = Key;
+    type Save = Ticks;
+    const RULES: RulesId = RulesId { name: "ticks", version: 1 };
+
+    fn new(&(): &()) -> Result<Self, SetupError> {
+        Ok(Ticks(0))
+    }
+    fn players(&self) -> u32 {
+        2
+    }
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+    fn step(&mut self, _: &[Key]) {
+        self.0 += 1;
+    }
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(self)
+    }
+    fn save(&self) -> Ticks {
+        self.clone()
+    }
+    fn load(&mut self, save: &Ticks) {
+        self.clone_from(save);
+    }
+    fn work(&self, _: &[Key]) -> u64 {
+        1
+    }
+}
 
 /// A port that counts the packets sent.
 struct Counted {
@@ -25,26 +84,46 @@ impl Transport for Counted {
     }
 }
 
+/// Plays the ticks that are due. The input changes in every tick, so that guesses of other peers are wrong.
+fn play(peer: &mut Peer<Ticks, Counted>) {
+    while peer.is_due() {
+        let key = u8::try_from(peer.tick() % 7).expect("less than 7");
+        peer.advance(&vec![Key(key); peer.seats().len()]).expect("valid");
+    }
+}
+
 #[test]
-fn a_peer_whose_update_fails_sends_packets_so_that_it_can_leave() {
-    let mut table = Table::new(10, 0);
-    table.host(PeerOptions::lockstep());
-    let (me, port) = table.next();
-    let options = PeerOptions { first_seat: Some(0), ..PeerOptions::lockstep() };
-    let counted = Counted { port, sent: 0 };
-    let mut peer = Peer::<Pushers, _>::join(&Setup::default(), options, me, counted, Network::address(0))
-        .expect("valid");
-    let mut error = None;
-    while error.is_none() && table.network.time() < Duration::from_secs(5) {
-        table.play(1);
-        error = peer.update(table.network.time()).err();
+fn a_peer_with_an_error_plays_no_more_and_can_still_leave() {
+    let network = Network::new(LinkConditions::latency(Duration::from_millis(80)), 1);
+    let port = |number| Counted { port: network.port(number), sent: 0 };
+    let (options, me) = (PeerOptions::rollback(), |number| PeerIdentity::new([number; 4]));
+    let mut host = Peer::<Ticks, _>::host(&(), options, me(1), port(0)).expect("valid");
+    let mut guest = Peer::<Ticks, _>::join(&(), options, me(2), port(1), Network::address(0)).expect("valid");
+    let (mut now, mut error) = (Duration::ZERO, None);
+    while error.is_none() && now < Duration::from_secs(3) {
+        now += Duration::from_millis(10);
+        network.set_time(now);
+        host.update(now).expect("valid");
+        play(&mut host);
+        BROKEN.set(now > Duration::from_secs(2));
+        error = guest.update(now).err();
+        BROKEN.set(false);
+        if error.is_none() {
+            play(&mut guest);
+        }
     }
-    assert_eq!(error, Some(PeerError::SeatTaken { seat: 0 }));
-    peer.leave();
-    let before = peer.transport_mut().sent;
-    for _ in 0..500 {
-        table.play(1);
-        let _same_error = peer.update(table.network.time());
+    assert!(matches!(error, Some(PeerError::Record(_))), "{error:?}");
+    let (tick, sent) = (guest.tick(), guest.transport_mut().sent);
+    guest.leave();
+    for _ in 0..200 {
+        now += Duration::from_millis(10);
+        network.set_time(now);
+        assert_eq!(guest.update(now).err(), error, "the same error");
+        host.update(now).expect("valid");
+        play(&mut host);
     }
-    assert!(peer.transport_mut().sent > before + 5, "{} packets", peer.transport_mut().sent - before);
+    assert_eq!(guest.tick(), tick);
+    assert!(guest.transport_mut().sent > sent + 20, "{} packets", guest.transport_mut().sent - sent);
+    let left = |event| matches!(event, PeerEvent::Session(Event::Unseated { .. }));
+    assert!(std::iter::from_fn(|| host.next_event()).any(left));
 }
