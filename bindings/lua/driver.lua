@@ -237,6 +237,7 @@ local function run(from, to, read)
     end
 end
 run(0, 500)
+assert(not pcall(both[1].pause, both[1], 0), "0 is true in Lua")
 both[1]:pause(true)
 run(501, 550)
 assert(both[1]:is_paused() and both[2]:is_paused())

@@ -78,9 +78,13 @@ function Driver.new(options)
 end
 
 --- Requests a pause, or withdraws the request. While any player requests a pause, updates play no ticks and do not call
---- `read`; the program has to continue to call `update`. The other peers get the event `EVENT_PAUSE`.
+--- `read`; the program has to continue to call `update`. The other peers get the event `EVENT_PAUSE`. A request counts
+--- while the player has a seat: not before it has caught up with a running match, and not from spectators.
 function Driver:pause(paused)
-    self.pauses = paused and true or false
+    if type(paused) ~= "boolean" then
+        error("`paused` is true or false, and not " .. tostring(paused), 2)
+    end
+    self.pauses = paused
     -- A peer that joins passes its request when the state arrives.
     if self:status() ~= ls.MATCH_CONNECTING then
         ls.match_pause(self.match, self.pauses and 1 or 0)
@@ -90,7 +94,12 @@ end
 --- Whether this peer or another player requests a pause.
 function Driver:is_paused()
     -- When all inputs are final, nobody waits for a player that quits during a pause.
-    return not self.finished and (self.pauses or next(self.pausing) ~= nil)
+    return not self.finished and (self.pauses and self:may_have_seat() or next(self.pausing) ~= nil)
+end
+
+-- A peer that joins a running match gets its seat after it has caught up, so its request must not stop it.
+function Driver:may_have_seat()
+    return self:status() == ls.MATCH_CONNECTING or self:seat_count() > 0
 end
 
 --- Frees the saved states and the match. Every later use of the driver, except `close`, is an error.

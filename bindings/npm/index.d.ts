@@ -1289,7 +1289,8 @@ export class MatchDriver<Saved = unknown> {
     readonly isPaused: boolean;
     /** Requests a pause, or withdraws the request. The other peers get the event `pause`. While any player requests a
      * pause, `update` plays no ticks and does not call `readInputs`; continue to call it, so that no player loses its
-     * seat. A player that leaves withdraws its request. */
+     * seat. A request counts while the player has a seat: not before it has caught up with a running match, not from
+     * spectators, and no longer when it leaves. */
     pause(paused: boolean): void;
     /** Frees the saved states, and makes the driver unusable. The match remains. */
     dispose(): void;

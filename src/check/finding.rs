@@ -100,7 +100,7 @@ pub struct Finding {
     /// Number of ticks after which the fault exists.
     pub tick: u64,
     /// Number of ticks played when the fault was detected. May exceed `tick` for [`Variant::RolledBack`] and
-    /// [`Variant::ByteSwapped`]. Contains the tick that exceeded a limit or could not be recorded.
+    /// [`Variant::ByteSwapped`]. Includes a tick that exceeded a limit or could not be recorded.
     pub played: u64,
     /// The first phase whose digest differs, if phases are compared. `None` also if the states differed before the
     /// step.

@@ -8,7 +8,6 @@ use super::failure::Failure;
 use super::finding::{Fault, Finding};
 use super::log::{Inputs, Log};
 use super::options::{CheckOptions, Depths, Variant};
-use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
@@ -37,37 +36,40 @@ fn run_counted<G: Game>(
     let mut checked = checked?;
     if options.variants.contains(&Variant::Recorded) {
         *simulated = simulated.saturating_add(2 * checked.ticks);
-        record(setup, log, options, checked.hash)?;
+        record(setup, log, options, checker.game())?;
         checked.variants.push(Variant::Recorded);
     }
     Ok(checked)
 }
 
-/// Records and verifies the log. `hash` is the last state hash of the reference run.
+/// Records and verifies the log. `last` is the game at the end of the reference run.
 fn record<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
     options: &CheckOptions,
-    hash: StateHash,
+    last: &G,
 ) -> Result<(), Box<Finding>> {
     let found = |fault, tick| Err(Box::new(Finding::new(Variant::Recorded, fault, tick)));
+    let compare = |reference: &G, recorded: &G, tick| {
+        if reference.state_hash() == recorded.state_hash() {
+            return Ok(());
+        }
+        let finding = Finding::new(Variant::Recorded, Fault::Hash, tick);
+        Err(Box::new(finding.with_saves(&reference.save(), &recorded.save())))
+    };
     let mut recording = match Recording::<G>::start(setup, log.interval) {
         Ok(recording) => recording,
         Err(error) => return found(Fault::Unrecordable(error), 0),
     };
     // The recorded game has the setup as a verifier decodes it.
-    if another::<G>(setup, Variant::Recorded, 0)?.state_hash() != recording.game().state_hash() {
-        return found(Fault::Hash, 0);
-    }
+    compare(&another::<G>(setup, Variant::Recorded, 0)?, recording.game(), 0)?;
     for (inputs, tick) in log.ticks.iter().zip(0..options.to) {
         if let Err(error) = recording.step(inputs) {
             return Err(Finding::in_next(Variant::Recorded, Fault::Unrecordable(error), tick));
         }
     }
     let ticks = recording.ticks();
-    if recording.game().state_hash() != hash {
-        return found(Fault::Hash, ticks);
-    }
+    compare(last, recording.game(), ticks)?;
     let file = match recording.finish() {
         Ok(file) => file,
         Err(error) => return found(Fault::Unrecordable(error), ticks),

@@ -35,7 +35,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Ends the replay after the last final tick, and returns the rest of the replay and the game. First leave or end
-    /// the match, and call [`update`](Peer::update) until [`Status::Closed`].
+    /// the match, and call [`update`](Peer::update) until [`Status::Closed`](crate::session::Status::Closed).
     ///
     /// # Errors
     /// [`PeerError`] if the replay cannot be finished.

@@ -45,7 +45,8 @@ pub struct Peer<G: Game, T> {
     /// Reused buffer for the bytes of a tick's inputs.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
-    /// Error that stopped the simulation. Later updates return it again, and only exchange packets.
+    /// Error that stopped the simulation. Later updates return it again and only exchange packets, until this peer joins
+    /// again.
     failure: Option<PeerError>,
 }
 
@@ -141,7 +142,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// since a fixed moment.
     ///
     /// # Errors
-    /// [`PeerError`] if this peer cannot continue. It still exchanges packets, so it can [`leave`](Peer::leave).
+    /// [`PeerError`] if this peer cannot continue. Later updates still exchange packets, so that it can
+    /// [`leave`](Peer::leave). Until then, the other peers wait for it.
     pub fn update(&mut self, now: Duration) -> Result<(), PeerError> {
         self.now = self.now.max(u64::try_from(now.as_micros()).unwrap_or(u64::MAX));
         for _ in 0..PACKETS_PER_UPDATE {
@@ -175,8 +177,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
         while let Some(event) = self.endpoint.next_event() {
             match event {
                 JoinEvent::State { tick, bytes } => {
-                    self.simulation.resume(tick.into(), &bytes)?;
-                    self.failure = None;
+                    let resumed = self.simulation.resume(tick.into(), &bytes);
+                    self.failure = resumed.clone().err();
+                    resumed?;
                     self.events.push_back(PeerEvent::Joined { tick: tick.into() });
                 }
                 JoinEvent::Refused { reason, offer } => match reason {
@@ -228,7 +231,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// peer.
     #[must_use]
     pub fn is_due(&self) -> bool {
-        self.endpoint.session().is_some_and(|session| session.is_due(self.now))
+        self.failure.is_none() && self.endpoint.session().is_some_and(|session| session.is_due(self.now))
     }
 
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
@@ -240,8 +243,12 @@ impl<G: Game, T: Transport> Peer<G, T> {
     ///
     /// # Errors
     /// [`PeerError`] if the number of inputs is not the number of own seats, an input cannot be encoded, or the game or
-    /// its replay cannot continue. Inputs that are not due yet are no error: the result is `false`.
+    /// its replay cannot continue, also after an error of [`update`](Peer::update). Inputs that are not due yet are no error: the result is `false`.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
+        // Inputs that are issued after a failure would let the others continue with a peer that plays no more.
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
         let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
         let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);
         let inputs = if seats == 0 { &[] } else { inputs };
@@ -334,6 +341,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Sends the request to join to this contact, for example after a time without an answer. Discards a session in
     /// progress; the new session has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
+        self.failure = None;
         self.endpoint.ask(contact);
     }
 

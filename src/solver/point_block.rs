@@ -26,8 +26,8 @@
 //! Such a spring has no potential, and feeds energy into bodies that turn.
 //!
 //! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
-//! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
-//! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
+//! Carrying over the impulse `p = G L` instead would multiply that part by up to `|e|^2`: on a rod 40 radii of gyration
+//! long, this added 1100 m/s. Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
 //! **The bias pass of a hinge measures along the chord.** Displacements are straight while arms turn, which opens the
 //! joint by about half the length of an arm times the square of its rotation. The velocity is therefore measured with

@@ -66,6 +66,7 @@ fn found(setup: &Setup) -> Option<u64> {
     let finding = &error.failure().unwrap().finding;
     assert_eq!((finding.variant, &finding.fault), (Variant::Recorded, &Fault::Hash));
     assert!(finding.hint().contains("setup"));
+    assert!(!finding.differences.is_empty(), "the saves differ");
     Some(finding.tick)
 }
 

@@ -114,6 +114,8 @@ fn a_peer_with_an_error_plays_no_more_and_can_still_leave() {
     }
     assert!(matches!(error, Some(PeerError::Record(_))), "{error:?}");
     let (tick, sent) = (guest.tick(), guest.transport_mut().sent);
+    assert!(!guest.is_due(), "a peer with an error plays no more");
+    assert_eq!(guest.advance(&vec![Key(0); guest.seats().len()]).err(), error);
     guest.leave();
     for _ in 0..200 {
         now += Duration::from_millis(10);
@@ -126,4 +128,6 @@ fn a_peer_with_an_error_plays_no_more_and_can_still_leave() {
     assert!(guest.transport_mut().sent > sent + 20, "{} packets", guest.transport_mut().sent - sent);
     let left = |event| matches!(event, PeerEvent::Session(Event::Unseated { .. }));
     assert!(std::iter::from_fn(|| host.next_event()).any(left));
+    guest.ask(Network::address(0));
+    assert_eq!(guest.update(now), Ok(()), "a peer that joins again has no error");
 }

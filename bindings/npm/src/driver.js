@@ -53,7 +53,7 @@ export class MatchDriver {
 
     get isPaused() {
         // When all inputs are final, nobody waits for a player that closes its page during a pause.
-        return !this.#isFinished && (this.#pauses || this.#pausing.size > 0);
+        return !this.#isFinished && ((this.#pauses && this.#mayHaveSeat()) || this.#pausing.size > 0);
     }
 
     pause(paused) {
@@ -94,6 +94,11 @@ export class MatchDriver {
             throw missing.error;
         }
         return this.#events.splice(0);
+    }
+
+    // A peer that joins a running match gets its seat after it has caught up, so its request must not stop it.
+    #mayHaveSeat() {
+        return this.#match.status === "connecting" || this.#match.seats.length > 0;
     }
 
     #check() {

@@ -362,6 +362,23 @@ test("a pause that is requested while a peer joins begins when it plays", () => 
     assert.throws(() => guest.driver.pause(), { code: "VALUE" });
 });
 
+test("a pause that is requested while a peer joins a running match begins when it has a seat", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 1 });
+    net.run(4000);
+    const guest = net.add({ contact: address(0) });
+    const spectator = net.add({ ownSeats: 0, contact: address(0) });
+    guest.driver.pause(true);
+    net.run(4000);
+    assert.deepEqual([guest.match.status, guest.match.seats.length, host.driver.isPaused], ["playing", 1, true]);
+    guest.driver.pause(false);
+    spectator.driver.pause(true);
+    net.run(1000);
+    // The request of a spectator stops nobody.
+    assert.deepEqual([host.driver.isPaused, spectator.driver.isPaused], [false, false]);
+    assert.ok(spectator.driver.tick > host.driver.tick - 20);
+});
+
 test("a pause in the last ticks does not keep a match from its end", () => {
     const net = new Net();
     const options = { guess: 0, delayMin: 20, delayMax: 30 };

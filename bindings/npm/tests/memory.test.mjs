@@ -27,7 +27,8 @@ test("without a free handle no replay is opened, and the error has no verdict", 
 
 test("bytes that do not fit into memory are freed", async (t) => {
     const real = library();
-    // A second instance of the JavaScript module, over the same wasm module with less memory.
+    // A second instance of the JavaScript module on the same wasm instance. Scratch memory of more than 50 000 bytes is
+    // refused, as if memory were full.
     const exports = { ...real, ls2d_scratch: (size) => (size > 50_000 ? 0 : real.ls2d_scratch(size)) };
     t.mock.method(WebAssembly, "instantiate", async () => ({ instance: { exports } }));
     const scarce = await import("../src/library.js?scarce");

@@ -267,7 +267,7 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// The local peer of a match, to leave or end it or to kick a player. The plugin calls `update` and `advance`. Use
-    /// [`Lockstep::report`] for a report.
+    /// [`Lockstep::report`] and [`Lockstep::replay_so_far`] for the files of the match.
     pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
         match &mut self.driver {
             Driver::Match(network) => Some(network.peer_mut()),
@@ -284,6 +284,17 @@ impl<G: LockstepGame> Lockstep<G> {
         match &mut self.driver {
             Driver::Match(network) => network.report(desync),
             _ => Err(LockstepError::Unsupported("report a desync")),
+        }
+    }
+
+    /// A complete replay of the final ticks of a match so far: see [`Peer::replay_so_far`].
+    ///
+    /// # Errors
+    /// [`LockstepError::Match`] when the replay cannot be finished, [`LockstepError::Unsupported`] for other drivers.
+    pub fn replay_so_far(&mut self) -> Result<Vec<u8>, LockstepError> {
+        match &mut self.driver {
+            Driver::Match(network) => network.replay_so_far(),
+            _ => Err(LockstepError::Unsupported("save a replay of a match that goes on")),
         }
     }
 

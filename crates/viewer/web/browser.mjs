@@ -12,6 +12,7 @@ export class Browser {
     #waiting = new Map();
     #last = 0;
     #session;
+    #isDown = false;
     // Exceptions and error messages of the page.
     complaints = [];
 
@@ -112,9 +113,14 @@ export class Browser {
         await this.send("Input.dispatchKeyEvent", { type: "keyUp", ...event });
     }
 
+    // Presses, moves or releases the mouse. Chromium captures the pointer only if moves name the button that is down.
     async mouse(type, x, y) {
-        const button = { button: "left", clickCount: 1 };
-        await this.send("Input.dispatchMouseEvent", { type, x, y, ...(type === "mouseMoved" ? {} : button) });
+        if (type !== "mouseMoved") {
+            this.#isDown = type === "mousePressed";
+        }
+        const button = type !== "mouseMoved" || this.#isDown ? "left" : "none";
+        const event = { type, x, y, button, buttons: Number(this.#isDown), clickCount: Number(type !== "mouseMoved") };
+        await this.send("Input.dispatchMouseEvent", event);
     }
 
     async screenshot() {

@@ -27,7 +27,7 @@ class Title extends Phaser.Scene {
         const button = (y, key, text, choose) => {
             add(y, `${key}   ${text}`, { fontStyle: "bold", backgroundColor: "#1b2438c0", padding: { x: 24, y: 12 } })
                 .setInteractive({ useHandCursor: true }).on("pointerdown", choose);
-            this.input.keyboard.once(`keydown-${{ 1: "ONE", 2: "TWO" }[key]}`, choose);
+            this.input.keyboard.on(`keydown-${{ 1: "ONE", 2: "TWO" }[key]}`, choose);
         };
         button(310, 1, "Two players at this keyboard", () => this.scene.start("arena", { session: Session.local() }));
         button(380, 2, "Online match", () => this.#join(Math.random().toString(36).slice(2, 7).toUpperCase()));

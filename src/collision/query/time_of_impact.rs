@@ -119,7 +119,8 @@ pub(crate) fn first_impact(
     }
 }
 
-/// Normal from A to B at a fraction of the tick. `None` if a shape rotates too far.
+/// Normal from A to B at a fraction of the tick. `None` if a shape rotates too far, or if the shapes stay more than 1 m
+/// apart.
 pub(crate) fn normal_at(
     (a, sweep_a): (&SupportShape, &Sweep),
     (b, sweep_b): (&SupportShape, &Sweep),

@@ -45,8 +45,9 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where its normal impulse is positive after the bias pass.
     touches: [Ints<N>; 2],
-    /// For each point of an elastic contact, -1 where it does not approach before contacts act. If the shapes touch or
-    /// overlap, -1 only where it separates at the restitution threshold or faster.
+    /// For each point of an elastic contact, -1 in the lanes in which the point is late: it does not approach before
+    /// contacts act, so that only another impulse can drive it to the surface. If the shapes touch or overlap, the point
+    /// is late only if it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
     pub(super) slide: Ints<N>,
     /// `f` times the tangential velocity: the part of the sliding that precedes the impact, during which friction does

@@ -94,8 +94,8 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// Adds a node for each touching pair, and collects the prospects of the bodies. In the returned features, only
-    /// `elastic` and `hits` are set.
+    /// Adds a node for each touching pair, and collects in `prospects` the properties of each body that follow from all
+    /// of its contacts. In the returned features, only `elastic` and `hits` are set.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
         let mut features = Features::default();
         prospects.clear();

@@ -19,7 +19,7 @@ use crate::world::state::{Side, State};
 /// Work units of [`Visit::of`] for a pair without a contact.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Number of comparisons of shapes outside of their fat boxes that together cost one work unit.
+/// Number of comparisons that together cost one work unit, in the comparison of shapes that have left their fat boxes.
 const COMPARED_PER_WORK: u64 = 16;
 
 /// Reports overlaps with sensors, once all bodies have been moved.

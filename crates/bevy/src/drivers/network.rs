@@ -3,7 +3,7 @@
 use core::fmt;
 
 use lockstep2d::lockstep::Game;
-use lockstep2d::peer::{Peer, PeerDesync, Transport};
+use lockstep2d::peer::{Peer, PeerDesync, PeerError, Transport};
 use lockstep2d::session::{Address, Status};
 
 use super::FrameTime;
@@ -98,11 +98,22 @@ impl<G: LockstepGame> MatchDriver<G> {
     }
 
     pub(crate) fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
-        // To make the report, the peer plays ticks again whose events are already in the log.
+        self.without_events(|peer| peer.report(desync))
+    }
+
+    pub(crate) fn replay_so_far(&mut self) -> Result<Vec<u8>, LockstepError> {
+        self.without_events(|peer| peer.replay_so_far())
+    }
+
+    /// Makes a file. For it, the peer plays ticks again whose events are already in the log.
+    fn without_events(
+        &mut self,
+        make: impl FnOnce(&mut Peer<Observed<G>, AnyTransport>) -> Result<Vec<u8>, PeerError>,
+    ) -> Result<Vec<u8>, LockstepError> {
         self.peer.game().log().suspend();
-        let report = self.peer.report(desync);
+        let file = make(&mut self.peer);
         self.peer.game().log().resume();
-        Ok(report?)
+        Ok(file?)
     }
 
     pub(crate) fn finish(self) -> Result<Vec<u8>, LockstepError> {

@@ -195,9 +195,12 @@ impl App {
         // The search starts at the first tick that both sources have. A snapshot may start at a later tick than a
         // replay, even after its end.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
-        let reached = scouts.iter_mut().all(|scout| scout.seek(start).is_ok() && scout.tick() == start);
-        if !reached {
-            return self.noted(name, Err(OpenError::NoCommonTick { first }));
+        for scout in &mut scouts {
+            let reached = scout.seek(start).map_err(OpenError::Tick);
+            self.noted(scout.name(), reached)?;
+            if scout.tick() != start {
+                return self.noted(name, Err(OpenError::NoCommonTick { first }));
+            }
         }
         self.message = None;
         self.comparison = Some(Comparison::new(other, scouts));

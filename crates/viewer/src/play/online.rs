@@ -224,9 +224,10 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
                 break;
             }
             // A peer that leaves needs further updates to tell the other peers, also after an error.
-            let _shown_before = self.advance(LEAVE_STEP);
+            // Errors were shown before.
+            let _ = self.advance(LEAVE_STEP);
             if self.ended.is_some() {
-                let _same_error = self.peer.update(self.now);
+                let _ = self.peer.update(self.now);
             }
             std::thread::sleep(LEAVE_STEP);
         }

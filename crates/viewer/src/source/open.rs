@@ -5,6 +5,8 @@ use std::fmt;
 use lockstep2d::replay::Verdict;
 use lockstep2d::report::EvidenceError;
 
+use super::SourceError;
+
 /// Reason why a file cannot be shown.
 ///
 /// ```
@@ -33,6 +35,8 @@ pub enum OpenError {
         /// Name of the file that is shown.
         first: String,
     },
+    /// A tick of a file cannot be shown.
+    Tick(SourceError),
 }
 
 impl fmt::Display for OpenError {
@@ -44,6 +48,7 @@ impl fmt::Display for OpenError {
             }
             OpenError::File(error) => error.fmt(f),
             OpenError::NoCommonTick { first } => write!(f, "no tick is both in this file and in {first}"),
+            OpenError::Tick(error) => error.fmt(f),
             OpenError::EmptyReport => write!(f, "the report contains no replay: there is nothing to play"),
         }
     }

@@ -41,7 +41,9 @@ fn what_is_damaged_says_what_is_wrong_as_the_verifier_does() {
                 assert!(matches!(verdict, Verdict::Unverifiable { .. }), "{place}: {verdict}");
                 assert!(status.contains(&error.to_string()), "{place}: {status}");
             }
-            Err(OpenError::EmptyReport | OpenError::NoCommonTick { .. }) => panic!("{place}"),
+            Err(OpenError::EmptyReport | OpenError::NoCommonTick { .. } | OpenError::Tick(_)) => {
+                panic!("{place}")
+            }
             Ok(()) => assert!(status.contains(&verdict.to_string()), "{place}: {status}"),
         }
         assert!(

@@ -122,7 +122,8 @@ fn nearest_corners(
     })
 }
 
-/// Edge whose normal is most opposed to `normal`. The first edge wins a tie, but in a box edge 0 or 2 wins.
+/// Edge whose normal is most opposed to `normal`. The first edge wins a tie; in a tie between edges of a box, however,
+/// edge 0 or 2 wins.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);

@@ -125,7 +125,7 @@ impl HingeSet {
         self.blocked_rows(number).is_none_or(|rows| rows.limit_is_open(side))
     }
 
-    /// The change of the impulse of a limit in one iteration, from an impulse of 0.
+    /// The change of the impulse of a limit if an iteration solved this limit alone, with an impulse of 0 so far.
     pub(in super::super) fn blocked_limit_wanted(
         &self,
         number: usize,
