@@ -1,7 +1,7 @@
 //! Batches of constraints of one kind, and the loops that run a stage of the solver over them.
 //!
-//! No two constraints of a colour change the same body, so that the batches of a colour may be solved in any order and
-//! on several threads. Constraints that fit no colour form the overflow, which one thread solves one by one.
+//! No two constraints of a colour change the same body. The batches of a colour may therefore be solved in any order
+//! and on several threads. Constraints that fit no colour form the overflow, which one thread solves one by one.
 //!
 //! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver defines an
 //! operation on one batch ([`Operation`]).
@@ -100,7 +100,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         self.records.clear();
     }
 
-    /// Clears all but the batches and records, which the caller overwrites.
+    /// Clears everything except the batches and records, which the caller overwrites.
     pub(super) fn clear_all_but_batches(&mut self) {
         self.extras.clear();
         self.colour_ends.clear();
@@ -139,8 +139,8 @@ impl<K: BatchKind> BatchShare<'_, K> {
         }
     }
 
-    /// Runs an operation over the overflow, if this thread solves it. Waits for the other threads if there is an
-    /// overflow.
+    /// Runs an operation over the overflow, if this thread solves the overflow. Waits for the other threads if there is
+    /// an overflow.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match &mut self.overflow {
             None => return,
@@ -231,14 +231,14 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
         while let ([batch, others @ ..], Some(record)) = (rest, records.next()) {
             rest = others;
             if let Some(next) = rest.first() {
-                // The next batch reads its bodies at these indices.
+                // Prefetch the bodies of the next batch.
                 prefetch(K::bodies(next));
             }
             let extra = if K::has_extra(batch) { extras.next() } else { None };
             let is_single = has_one_constraint(K::bodies(batch));
             let parts = BatchParts { batch, record, extra, bodies, faults };
-            // One lane takes less than half as many instructions as eight lanes. In a small world, most batches have
-            // one constraint.
+            // The kernel for one lane takes less than half the instructions of the kernel for eight lanes. In a small
+            // world, most batches have one constraint.
             if is_single { operation.apply::<Scalar<1>, N>(parts) } else { operation.apply::<L, N>(parts) }
         }
     }

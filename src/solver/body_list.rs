@@ -1,5 +1,5 @@
-//! The bodies of a tick: the active bodies, other bodies that joints need, and the ground, which represents all the
-//! rest.
+//! The bodies of a tick: the active bodies, other bodies that joints need, and the ground, which represents all
+//! remaining bodies.
 
 use alloc::vec::Vec;
 
@@ -40,9 +40,9 @@ impl BodyFacts {
     }
 }
 
-/// Lever ratio `e = c / k` with `c = r x n`, for an arm `r` and a direction `n`, clamped to [`RATIO_MAX`]. The
-/// direction has the fraction bits of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the conversion from a
-/// length to a lever ratio.
+/// Lever ratio `e = c / k` with `c = r x n`, for an arm `r`, a direction `n` and the radius of gyration `k`, clamped to
+/// [`RATIO_MAX`]. The direction has the fraction bits of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the
+/// conversion from a length to a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
     // `c` is below 2^31.5, so its product with a mantissa is below 2^63.

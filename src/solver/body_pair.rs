@@ -1,9 +1,9 @@
 //! The two bodies of a joint that is not a hinge, while the joint is solved.
 //!
 //! A velocity change is rounded to the resolution of [`Speed`]. Over thousands of updates the roundings would add up to
-//! a force: a spring and a motor that balance each other would change the spin of the heavier body by one unit in every
-//! sub-step. The rounding error is therefore carried over to the next change by the same joint (error feedback, as in
-//! first-order noise shaping), so that the sum of the changes in a tick is rounded once.
+//! a force: a spring and a motor that balance each other would change the spin of the heavier body by one unit of
+//! [`Speed`] in every sub-step. The rounding error is therefore carried over to the next change by the same joint
+//! (error feedback, as in first-order noise shaping), so that the sum of the changes in a tick is rounded once.
 
 use super::body::SolverBody;
 use super::limits::Faults;

@@ -1,5 +1,5 @@
-//! Graph colouring: no two constraints of a colour change the same body, so that their order does not matter. A scalar,
-//! a wide and a threaded solver then give the same bits.
+//! Graph colouring: no two constraints of a colour change the same body, so their order does not matter. The solver
+//! therefore gives the same bits with scalar code, with SIMD, and on several threads.
 //!
 //! The constraints of a colour are divided among the threads by their bodies, so that a body is seldom passed from one
 //! processor to another.
@@ -61,7 +61,7 @@ pub(super) enum Size {
 pub enum SolverColour {
     /// The colour, counted from 0. The contact shares no moving body with other contacts of this colour.
     Group(u8),
-    /// Other contacts of the bodies already have all colours. The contact is solved by itself, before contacts with a
+    /// Other contacts of the two bodies use all colours. The contact is solved alone, before the contacts that have a
     /// colour.
     Overflow,
 }
@@ -182,7 +182,7 @@ impl Colouring {
         &self.order
     }
 
-    /// The constraints that fit no colour: the cold ones, or the others if `cold` is false.
+    /// The constraints that fit no colour: the cold ones if `cold` is true, otherwise the warm ones.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
         let place = if cold { PLACES } else { 0 };
         &self.order[self.start(place, 0)..self.end(place, 0)]
@@ -237,7 +237,8 @@ impl Ranks {
         body as usize * self.parts / self.body_count
     }
 
-    /// The rank of a place in a thread. The overflow has one rank for all threads.
+    /// The rank of the constraints that have this place and belong to the thread `part`. The overflow has one rank for
+    /// all threads.
     fn rank_of(self, place: u8, part: usize) -> usize {
         let first = if place < PLACES { 0 } else { self.count() / 2 };
         first

@@ -79,7 +79,7 @@ impl<'a> StepContext<'a> {
         self.member.is_alone()
     }
 
-    /// Waits for all other threads, whose results may be read afterwards.
+    /// Waits for all other threads. Their results may be read afterwards.
     pub(super) fn wait(&self) {
         self.member.wait();
     }

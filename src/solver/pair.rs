@@ -1,4 +1,4 @@
-//! The bodies of a batch while it is solved, and arithmetic that contacts and hinges share.
+//! The velocities of the bodies of a batch while the batch is solved, and arithmetic that contacts and hinges share.
 
 use core::cell::Cell;
 

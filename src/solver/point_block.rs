@@ -16,14 +16,14 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `p` is the impulse times the sum of the inverse masses. For a rigid block (`s = 1`), `L` is the change of the
-//! relative velocity of the anchors.
+//! `L` accumulates over the iterations, and `p` is the impulse times the sum of the inverse masses. For a rigid block
+//! (`s = 1`), `L` is the change of the relative velocity of the anchors.
 //!
-//! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`:
-//! `(impulseScale I + massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit
-//! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. A spring that
-//! yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms.
-//! Such a spring has no potential, and feeds energy into bodies that turn.
+//! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`. With
+//! `K1`, which is `K` of the rigid block, the equation `(impulseScale I + massScale K1) p = -massScale v - push` is the
+//! implicit step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. A
+//! spring that yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions
+//! of the arms. Such a spring has no potential, and feeds energy into bodies that turn.
 //!
 //! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
 //! Carrying over the impulse `p = G L` instead would multiply that part by up to `|e|^2`: on a rod 40 radii of gyration
@@ -75,7 +75,7 @@ impl Symmetric<Unit> {
         [dot(self.m11, self.m12), dot(self.m12, self.m22)]
     }
 
-    /// `f`, with 30 fraction bits.
+    /// `f = G e`, with 30 fraction bits.
     fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<i64> {
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, e: Ratio| i64::from(gain.to_bits()) * i64::from(e.to_bits());
@@ -110,7 +110,7 @@ pub(crate) struct PointBlock {
 }
 
 impl PointBlock {
-    /// The block of two levers, for a softness with this `mass_scale`.
+    /// The block that pins the ends of two levers together, for a softness with this `mass_scale`.
     pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions, mass_scale: Unit) -> Self {
         let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();

@@ -17,7 +17,8 @@
 //! ```
 //!
 //! `L` is the accumulated impulse divided by the effective mass: a speed. `limits.rs` limits velocities and `L`. A
-//! number that these limits change counts as a fault, except in an initial guess ([`lambda_of`]).
+//! number that these limits change counts as a fault, except in an initial guess ([`lambda_of`]). `softness.rs` defines
+//! `massScale` and `impulseScale`.
 
 mod angular;
 mod coupled;
@@ -110,7 +111,8 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. It leaves room for a linear part of 2^57 in [`Row::along`], with spins of up to 1024 m/s.
+/// Largest lever ratio. With spins of up to 1024 m/s, the angular part in [`Row::along`] is then at most 2^63 - 2^57,
+/// which leaves room for a linear part of 2^57 in 64 bits.
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
 /// `D` of a row, with 30 fraction bits. 0 if impulses move neither body.
@@ -256,8 +258,8 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s. Such impulses occur when a bound shrinks or a body under load comes
-    /// free.
+    /// Applies an impulse of more than 512 m/s. Such impulses occur when a bound shrinks or a body under load is
+    /// released.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, bodies: &mut BodyPair<'_>) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -269,8 +271,8 @@ impl Row {
     }
 }
 
-/// `L = p D`, where `p` was computed with an earlier `D`. The result is only an initial guess, so that clamping it is
-/// no fault.
+/// `L = p D`, where `p` was computed with an earlier `D`. The result is only an initial guess, so clamping it is no
+/// fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)

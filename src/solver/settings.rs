@@ -84,8 +84,8 @@ pub struct SolverSettings {
     pub restitution_threshold: Fx,
     /// Speed limit in m/s, 1 to 400, for dynamic bodies and for velocities that a caller sets. The limit also holds for
     /// the radius of gyration times the angular velocity. At fewer than 27 ticks per second the limit is lower, so that
-    /// a body moves at most [`DISTANCE_MAX`] in a tick. The limit is applied before contacts and joints act: in the tick of
-    /// an impact a body may be faster.
+    /// a body moves at most [`DISTANCE_MAX`] in a tick. The limit is applied before contacts and joints act: in the
+    /// tick of an impact, a body may be faster.
     pub speed_max: Fx,
 }
 

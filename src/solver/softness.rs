@@ -1,5 +1,5 @@
 //! Soft constraints: springs and dampers that stay stable at any stiffness, given by three coefficients (E. Catto,
-//! "Soft Constraints", GDC 2011, and Solver2D).
+//! "Soft Constraints", GDC 2011, and Solver2D). With the damping ratio `zeta` and the time step `h` of a sub-step:
 //!
 //! ```text
 //! omega = 2 pi hertz,  a1 = 2 zeta + h omega,  a2 = h omega a1,  a3 = 1 / (1 + a2)
@@ -23,7 +23,7 @@ pub(crate) struct Softness {
 }
 
 impl Softness {
-    /// Solves the velocity exactly, without regard to the position error.
+    /// Rigid: solves the velocity exactly and does not correct the position error.
     pub(crate) const RIGID: Self =
         Softness { bias_rate: Rate::ZERO, mass_scale: Unit::ONE, impulse_scale: Unit::ZERO };
 
@@ -81,9 +81,9 @@ impl Softness {
         fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into())
     }
 
-    /// [`Self::push`] along the direction of `stretch`, with components of at most `most`, in units of [`Speed`].
+    /// Like [`Self::push`], along the direction of `stretch`, with components of at most `most`, in units of [`Speed`].
     pub(crate) fn push_along(&self, stretch: Vec2<Fx>, most: Fx) -> [i64; 2] {
-        // The bias rate times a longer stretch does not fit.
+        // The product of the bias rate and a longer stretch would overflow.
         let longest = Fx::MAX / (i64::from(self.bias_rate.to_num::<i32>()) + 1);
         let Vec2 { x, y } = stretch.shortened(longest);
         let Vec2 { x, y } = Vec2::new(self.push_wide(x), self.push_wide(y)).shortened(most);

@@ -1,6 +1,6 @@
 //! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //!
-//! All threads of a tick run the same stage at a time, each on its own bodies and constraints. A barrier
+//! All threads of a tick run the same stage at the same time, each on its own bodies and constraints. A barrier
 //! ([`StepContext::wait`]) precedes every stage that reads bodies of other threads, and follows every stage over
 //! constraints.
 

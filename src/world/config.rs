@@ -193,7 +193,7 @@ impl Config {
     }
 }
 
-/// In metres.
+/// Smallest [`Config::speculative_distance`] in metres.
 const SPECULATIVE_DISTANCE_MIN: Fx = fx!(0.001);
 
 pub(crate) fn check_gravity(gravity: Vec2<Fx>) -> Result<(), WorldError> {

@@ -31,7 +31,7 @@ pub(crate) fn mass_of<'a>(
     let mass = match kind {
         BodyKind::Dynamic => MassProperties::dynamic(source, shapes)?,
         BodyKind::Fixed | BodyKind::Kinematic => {
-            // Checks a given mass already now, because the body may become dynamic later.
+            // Checks a given mass although the body is not dynamic, because the body may become dynamic later.
             if matches!(source, MassSource::Given { .. }) {
                 MassProperties::dynamic(source, shapes)?;
             }
@@ -50,8 +50,8 @@ pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     }
 }
 
-/// Bounds extended by a margin in metres. Corners are multiples of 2^-22 m, so that a snapshot can store those near the
-/// body's centre as 32-bit offsets.
+/// Bounds extended by a margin in metres. Corners are multiples of 2^-22 m, so that a snapshot can store corners near
+/// the body's centre as 32-bit offsets.
 pub(crate) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
     bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }

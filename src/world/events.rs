@@ -98,8 +98,8 @@ impl HitEvent {
 ///
 /// Overlaps are measured at the end of the tick. A shape that crosses a sensor within a tick has both events in that
 /// tick, with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. The events assume
-/// that bodies move straight and rotate evenly within a tick. A shape that leaves a sensor and returns within the tick
-/// has no events.
+/// that bodies move along straight lines and rotate at constant speed within a tick. A shape that leaves a sensor and
+/// returns within the tick has no events.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -224,14 +224,14 @@ pub struct Events {
     /// Bodies that the tick moved or put to sleep, in slot order.
     pub moved: Vec<MoveEvent>,
     /// Pairs of solid shapes that began to touch: they were within [`super::Config::touching_distance`] at the start of
-    /// the tick, or had a normal impulse in the tick. One of the two shapes has to enable contact events. Sorted by
-    /// shape A, then by shape B.
+    /// the tick, or had a normal impulse in the tick. At least one of the two shapes must enable contact events. Sorted
+    /// by shape A, then by shape B.
     pub contact_begin: Vec<ContactEvent>,
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended.
     /// Sorted like `contact_begin`.
     pub contact_end: Vec<ContactEvent>,
-    /// Pairs that had a normal impulse after an approach at [`super::Config::hit_speed`] or faster. One of the two
-    /// shapes has to enable hit events. Sorted like `contact_begin`.
+    /// Pairs that had a normal impulse after an approach at [`super::Config::hit_speed`] or faster. At least one of the
+    /// two shapes must enable hit events. Sorted like `contact_begin`.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,

@@ -203,9 +203,9 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes with overlapping fat boxes. Counts only pairs that may collide, or of which one shape
-    /// is a sensor that detects the other. At least one of the two bodies must be dynamic and awake, or kinematic and
-    /// not yet at rest for a whole tick. The next tick adds the pairs of new and moved shapes.
+    /// Number of pairs of shapes with overlapping fat boxes. Counts only pairs that may collide, and pairs in which one
+    /// shape is a sensor that detects the other shape. At least one of the two bodies must be dynamic and awake, or
+    /// kinematic and not yet at rest for a whole tick. The next tick adds the pairs of new and moved shapes.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -256,7 +256,7 @@ impl World {
     /// the threads could be created; if not, nothing changes. Needs the feature `parallel`.
     ///
     /// The world measures ticks with all threads and ticks with the calling thread alone, and mostly uses the faster of
-    /// the two. During a tick, waiting threads spin instead of sleeping, so that each keeps a processor busy. A tick
+    /// the two. During a tick, waiting threads spin instead of sleeping, so each of them keeps a processor busy. A tick
     /// uses the calling thread alone if the previous tick simulated fewer than 256 bodies, or if a clone of the world
     /// is using the shared threads.
     #[cfg(feature = "parallel")]
@@ -277,7 +277,8 @@ impl World {
         threads.map(|threads| self.scratch.solver.threads = threads).is_some()
     }
 
-    /// The instruction set that the solver uses: the best one of this machine, or that of [`World::set_backend`].
+    /// The instruction set that the solver uses: the best one of this machine, or the one that [`World::set_backend`]
+    /// has set.
     #[must_use]
     pub fn backend(&self) -> Backend {
         self.scratch.solver.machine.backend()

@@ -35,7 +35,7 @@ pub(crate) enum Side {
 }
 
 /// All state that influences later ticks, and the names and numbers that games store. The code of snapshots and hashes
-/// destructures `State` without `..`, so that a new field causes compile errors until both contain the field.
+/// destructures `State` without `..`, so a new field causes compile errors until both handle the field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
@@ -82,7 +82,7 @@ impl State {
         self.islands.keep_pages();
     }
 
-    /// Bodies of two shapes, whose slots must be occupied.
+    /// The bodies of the shapes in two slots, which must be occupied.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))
     }
@@ -96,8 +96,8 @@ impl State {
             contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.end());
         };
         end(&mut self.contacts);
-        // Contacts of bodies that were woken since the last tick are still in this list. Searches before mutable
-        // access, because that access drops the packed form of the list.
+        // Contacts of bodies that were woken since the last tick are still in `sleeping_contacts`. The list is searched
+        // before it is borrowed mutably, because a mutable borrow drops its packed form.
         if self.sleeping_contacts.iter().any(has_own) {
             end(&mut self.sleeping_contacts);
         }
@@ -118,7 +118,7 @@ impl State {
         }
     }
 
-    /// Body of a shape, whose slot must be occupied.
+    /// The body of the shape in a slot, which must be occupied.
     pub(crate) fn body_of(&self, shape: u32) -> &Body {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }

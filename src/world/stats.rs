@@ -11,7 +11,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Phase {
-    /// Refits fat boxes, updates pairs, wakes islands by contact.
+    /// Refits fat boxes, updates pairs, wakes islands that active bodies touch.
     BroadPhase,
     /// Finds manifolds.
     NarrowPhase,

@@ -116,7 +116,7 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
     assert_eq!(fast, plain, "the box reject and the cached axis do not change the result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
-    // A pair has at most two points, so that at least half as many pairs touch.
+    // A pair has at most two points, so the number of touching pairs is at least half the number of points.
     let (searches, touching) = (counters.searches as usize, fast.div_ceil(2));
     let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");

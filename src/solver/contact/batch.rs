@@ -44,7 +44,8 @@ pub(super) struct Point<const N: usize> {
     pub(super) first_separation: Ints<N>,
     /// Separation at the current positions.
     pub(super) separation: Ints<N>,
-    /// Friction limit per unit of the normal impulse: `mu Dt / Dn`.
+    /// Friction limit per unit of the normal impulse: `mu Dt / Dn`, with the denominators `D` of the tangential and the
+    /// normal row.
     pub(super) friction_ratio: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
 }

@@ -11,7 +11,7 @@ use super::super::batches::{BatchParts, Operation};
 use super::Contacts;
 use crate::simd::Lanes;
 
-/// Adds the impulses of a sub-step to those of the tick, saturated.
+/// Adds the impulses of a sub-step to the sum over the tick. The sum saturates.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct AddHits;
 

@@ -2,8 +2,8 @@
 //! sub-step.
 //!
 //! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body is the velocity at the middle of the
-//! sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the
-//! separation `s`:
+//! sub-step. With the time step `h` of a sub-step, the restitution `e`, the relative normal velocity `v` of the point,
+//! its change `a` by forces in the sub-step, and the separation `s`:
 //!
 //! ```text
 //! f  = s / (-v h)                 time of impact, as a fraction of the sub-step
@@ -12,9 +12,9 @@
 //! s' = s + v f h + vs (1 - f) h   gap at the end of the sub-step
 //! ```
 //!
-//! With `e = 1` and a constant force, these equations conserve the energy of the leapfrog scheme,
-//! `v^2 / 2 + g x - g h v / 2`. Bodies move as if the impulse had acted at the time of impact, so that angular momentum
-//! is conserved as well.
+//! With `e = 1` and a constant force, these equations conserve the energy of the leapfrog scheme, which is `v^2 / 2 + g
+//! x - g h v / 2` at the height `x` under gravity `g`. Bodies move as if the impulse had acted at the time of impact,
+//! so that angular momentum is conserved as well.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::context::Pass;
@@ -37,7 +37,8 @@ pub(super) struct Impacts<const N: usize> {
     /// first sub-step of a tick, this is the relative normal velocity before forces act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that bounces, else `v`. A
-    /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time of the first impact.
+    /// point bounces if its approach speed is at least the restitution threshold, and its gap is below [`NEAR`] at the
+    /// time of the first impact.
     pub(super) approach: [Ints<N>; 2],
     /// For each point that bounces, `a (f - 1/2)` plus one unit of [`Speed`].
     pub(super) drift: [Ints<N>; 2],
@@ -46,8 +47,8 @@ pub(super) struct Impacts<const N: usize> {
     /// For each point, -1 where its normal impulse is positive after the bias pass.
     touches: [Ints<N>; 2],
     /// For each point of an elastic contact, -1 in the lanes in which the point is late: it does not approach before
-    /// contacts act, so that only another impulse can drive it to the surface. If the shapes touch or overlap, the point
-    /// is late only if it separates at the restitution threshold or faster.
+    /// contacts act, so only another impulse can drive it to the surface. If the shapes touch or overlap, the point is
+    /// late only if it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
     pub(super) slide: Ints<N>,
     /// `f` times the tangential velocity: the part of the sliding that precedes the impact, during which friction does
@@ -91,8 +92,8 @@ impl<const N: usize> Impacts<N> {
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`, or 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse of
-    /// the late point. In the next sub-step the point approaches and may bounce.
+    /// See [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse
+    /// of the late point. In the next sub-step the point approaches and may bounce.
     pub(super) late: L::Mask,
 }
 
@@ -175,7 +176,7 @@ impl Operation<Contacts> for PredictImpacts {
 }
 
 impl<const N: usize> ContactExtras<N> {
-    /// Resets the numbers that are also read for points without an impact.
+    /// Resets the fields that are read even for points without an impact.
     #[inline(always)]
     fn begin_sub_step(&mut self) {
         self.impacts.drift = [Ints::ZERO; 2];

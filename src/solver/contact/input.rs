@@ -43,11 +43,11 @@ pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A lane of a batch that is being filled. Quads of all lanes are transposed into vectors.
+/// The inputs of one lane of a batch. The quads of all lanes are transposed into vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
-    /// [`ContactSource::changed`].
+    /// See [`ContactSource::changed`].
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) shapes: Pair,
@@ -94,8 +94,8 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// Adds a node for each touching pair, and collects in `prospects` the properties of each body that follow from all
-    /// of its contacts. In the returned features, only `elastic` and `hits` are set.
+    /// Adds a node for each touching pair, and fills `prospects` with a summary of each body's contacts. In the
+    /// returned features, only `elastic` and `hits` are set.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
         let mut features = Features::default();
         prospects.clear();
@@ -199,8 +199,9 @@ impl ContactSource<'_> {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
-    /// The bodies that impulses change, with the ground in place of the others. A body counts as changed even if its
-    /// share of an impulse rounds to 0: another contact may change the body, and must not get the same colour.
+    /// The bodies that impulses change. The ground replaces a body that impulses do not change. A body counts as
+    /// changed even if its share of an impulse rounds to 0: another contact may change the body, and must not get the
+    /// same colour.
     #[inline(always)]
     pub(super) fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })

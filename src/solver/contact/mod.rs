@@ -1,6 +1,7 @@
 //! Contacts: one row along the normal for each point, and one along the tangent for both points.
 //!
-//! With the rows and gains of `row.rs`, for each contact of a batch:
+//! With the rows and gains of `row.rs`, the separation `s0` at the start of the tick and the displacements `dx` since
+//! then, for each contact of a batch:
 //!
 //! ```text
 //! J  = (-n, -eA, n, eB)                                  the form of the rows along the normal and the tangent
@@ -14,7 +15,7 @@
 //! impulses to the state. `overflow_policy` keeps numbers within their formats.
 //!
 //! The difference of two velocities fits its format, because each velocity is below 512 m/s. Lanes without a contact
-//! have gains of 0, so that their other numbers do not matter.
+//! have gains of 0, so their other numbers do not matter.
 
 mod batch;
 mod constants;
@@ -104,7 +105,7 @@ impl ContactSet {
         self.features.hits
     }
 
-    /// Whether any contact of a body may bounce. `body` is its index in the body list.
+    /// Whether any contact of a body may bounce. `body` is the index of the body in the body list.
     pub(super) fn bounces(&self, body: u32) -> bool {
         self.prospects[body as usize].bounces()
     }

@@ -153,8 +153,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> 
     }
 }
 
-/// Applies impulses of more than 512 m/s. Such impulses occur when a friction limit shrinks or a shape under load comes
-/// free.
+/// Applies impulses of more than 512 m/s. Such impulses occur when a friction limit shrinks or a shape under load is
+/// released.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,
@@ -174,7 +174,7 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
 /// Does not check sums, but records whether all numbers were within their bounds.
 pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
     /// Bitwise OR of the numbers that must be within the bound of [`LARGE_BITS`], with the bound added to each. The
-    /// bound is a power of two, so that a number within it sets no bit at or above twice the bound.
+    /// bound is a power of two, so a number within the bound sets no bit at or above twice the bound.
     large: L::Int,
     /// Bitwise OR of the numbers that must be within the bound of [`SMALL_BITS`], with that bound added to each.
     small: L::Int,
@@ -299,8 +299,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
     }
 }
 
-/// Changes velocities by impulses within the bounds. Multiplied by four, the impulse gives the velocity change as the
-/// upper half of a product, which saves a shift.
+/// Changes velocities by impulses within the bounds. Multiplying the impulse by four puts the velocity change into the
+/// upper half of the product, which saves a shift.
 #[inline(always)]
 fn change_within_bounds<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);

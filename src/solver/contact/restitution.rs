@@ -1,6 +1,6 @@
 //! Restitution: a point bounces if its approach speed is at least the threshold and its normal impulse is positive. If
-//! two points bounce together, a positive impulse of either is enough. The point separates at `e` times the approach
-//! speed, or more slowly if `e` is at most 1 and the contact would gain energy.
+//! two points bounce together, a positive impulse of one of them is enough. The point separates at `e` times the
+//! approach speed, or more slowly if `e` is at most 1 and the contact would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + min(e va + drift, 0)), 0)     after the passes of the sub-step in which it bounces
@@ -43,8 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities are also read in lanes that do not bounce. There, a velocity that does not fit is no fault.
-        // Reading therefore counts no faults.
+        // Velocities are read in all lanes, but a velocity that does not fit is no fault in a lane that does not
+        // bounce. `reader` therefore counts no faults.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
@@ -132,19 +132,20 @@ impl<const N: usize> Rebound<N> {
     const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
-/// The share of a lane's rebound at which the impulses of its contact in the sub-step add no energy:
+/// The share of the rebound in a lane at which the contact's impulses in the sub-step add no energy:
 ///
 /// ```text
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. Tangential velocities are
-/// relative to a moving surface. A restitution above 1 is meant to do work, and is not limited.
+/// The sum is over the normal rows and the friction row of the contact, and `v+` is the velocity after the rebound.
+/// Tangential velocities are relative to a moving surface. A restitution above 1 is meant to do work, and is not
+/// limited.
 ///
 /// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
-/// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its
-/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities without a rebound
-/// and with the full rebound.
+/// one wall reverses the sliding along the other. `W` is convex in the share, and therefore nowhere above the straight
+/// line from its value without a rebound to its value with the full rebound. `slides` are the tangential velocities
+/// without a rebound and with the full rebound.
 fn share_without_gain<const N: usize>(
     lane: usize,
     batch: &Batch<N>,

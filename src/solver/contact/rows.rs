@@ -18,7 +18,7 @@ use super::input::{Input, columns};
 use crate::math::{FrictionRatio, Fx, Length, Ratio, narrow, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
-/// Shift from the format of a unit vector to that of a lever ratio.
+/// Shift from the format of a unit vector to the format of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
 
 #[derive(Clone, Copy)]
@@ -139,7 +139,7 @@ fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
 }
 
 impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
-    /// `mantissa` and `exponent` are those of `1 / k`.
+    /// `mantissa` and `exponent` represent `1 / k`.
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
@@ -212,7 +212,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
 #[derive(Clone, Copy)]
 struct Long<L: Lanes<N>, const N: usize> {
     whole: L::Int,
-    /// The 30 fraction bits.
+    /// The fractional part, with 30 bits.
     part: L::Int,
 }
 

@@ -1,4 +1,4 @@
-//! Returns the impulses of batches to the contacts of the state.
+//! Writes the impulses of batches back to the contacts of the state.
 
 use alloc::vec::Vec;
 
@@ -65,7 +65,7 @@ impl<const N: usize> Records<N> {
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// Number of lanes with a contact, if none of them is wedged.
+    /// Number of lanes with a contact, or `None` if a contact has a wedged body.
     #[inline(always)]
     pub(super) fn unwedged_len(&self) -> Option<usize> {
         (self.wedged == [false; N]).then_some(self.len as usize)

@@ -167,8 +167,9 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit is larger. The shortening
-/// therefore matters only if the force reverses the velocity of the body, which then ends slower.
+/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit exceeds 512 m/s. The
+/// shortening therefore matters only if the force reverses the velocity of the body: the final velocity is then lower
+/// than it would be without the shortening.
 #[cold]
 fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
     let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));

@@ -48,8 +48,8 @@ impl SubStep {
         Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
     }
 
-    /// [`Self::distance`] in lanes. The quotient `q` may be off by one. Its remainder, `64 v + rate - 2 rate q`, shows
-    /// the error, and the lowest 32 bits of the remainder suffice.
+    /// Computes [`Self::distance`] in each lane. The quotient `q` may be off by one. The remainder `64 v + rate - 2
+    /// rate q` shows the error, and its lowest 32 bits suffice.
     #[inline(always)]
     pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
         let double = L::splat(2 * self.rate);

@@ -24,7 +24,7 @@ use crate::threads::TeamLock;
 pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
     anchors: Vec<Anchor>,
-    /// For each body of the tick, its place in `bodies` plus 1; 0 if it has no joint.
+    /// For each body of the tick, its index in `bodies` plus 1; 0 if the body has no joint.
     places: Vec<u32>,
     bodies: Vec<HingeBody>,
     /// Rotation coefficients of `bodies`, stored separately because every sub-step reads them.

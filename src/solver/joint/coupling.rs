@@ -93,7 +93,7 @@ impl Coupling {
 }
 
 impl JointDef {
-    /// The definition, changed so that a gear, rack or pulley holds at the poses of its bodies.
+    /// The definition, changed so that a gear, rack or pulley has no position error at the poses of its bodies.
     pub(crate) fn fitted(mut self, a: &Body, b: &Body) -> Self {
         match self.kind {
             JointKind::Gear(gear) => {
@@ -120,7 +120,7 @@ impl JointDef {
         b.transform().apply(self.frame_b.anchor) - a.transform().apply(self.frame_a.anchor)
     }
 
-    /// The position of a rack in metres; 0 where the joint holds.
+    /// The position of a rack in metres; 0 if the joint has no position error.
     fn rack_position(&self, rack: &Rack, a: &Body, b: &Body, turns: i64) -> Fx {
         let along = Rot::from_angle(b.angle() + self.frame_b.angle);
         let along = Vec2::new(along.cos, along.sin).widen();
@@ -129,8 +129,8 @@ impl JointDef {
 }
 
 impl Joint {
-    /// The torque on B, computed from `opposite`, the negated torque on A. The two are equal, except in a gear without
-    /// a pitch point.
+    /// The torque on B, given the negated torque on A (`opposite`). The torque on B equals `opposite`, except in a gear
+    /// without a pitch point.
     pub(super) fn torque_on_b(&self, opposite: Fx, gap: Vec2<Fx>) -> Fx {
         match self.def.kind {
             JointKind::Gear(gear) if pitch_per_tooth(&gear, gap).is_none() => {
@@ -224,7 +224,7 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
 /// [`LONGEST`] and [`LONGEST`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
-        // An anchor at its wheel counts as hanging down.
+        // If an anchor is at its wheel, its rope counts as hanging down.
         .map(|rope| rope.normalized_with_length().unwrap_or((-Vec2::Y, Fx::ZERO)));
     let over_ratio = |most: Fx| fx_div(most, ratio).unwrap_or(Fx::ONE);
     let scale =

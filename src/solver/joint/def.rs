@@ -7,7 +7,7 @@ use super::{Distance, Gear, Motor, Prismatic, Pulley, Rack, Revolute, Weld, Whee
 use crate::body::{Body, BodyId, BodyKind, Pose, REACH_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 
-/// A joint between two bodies, with a frame on each. Its kind defines how B's frame may move in A's.
+/// A joint between two bodies, with a frame on each. Its kind defines how B's frame may move relative to A's.
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, fx, solver::{JointDef, Revolute}, world::World};
@@ -36,9 +36,10 @@ pub struct JointDef {
     pub enabled: bool,
     /// The motion that the joint allows.
     pub kind: JointKind,
-    /// Stiffness of what the joint holds rigidly and of its limits. A load that gives its body the acceleration `g`
-    /// stretches the joint by `g / w^2`, with `w` in rad/s. The joint approaches this length without vibration, with the
-    /// time constant `1 / (h w^2)`, where `h` is the sub-step in seconds. For suspensions use the springs of the joints.
+    /// Stiffness of the rigid parts of the joint and of its limits. A load that gives its body the acceleration `g`
+    /// stretches the joint by `g / w^2`, with the frequency `w` in rad/s. The joint approaches this length without
+    /// vibration, with the time constant `1 / (h w^2)`, where `h` is the sub-step in seconds. For suspensions use the
+    /// springs of the joints.
     ///
     /// `None` uses the values in [`SolverSettings`](crate::solver::SolverSettings). The frequency is limited to a
     /// quarter of the sub-step rate.
@@ -189,8 +190,8 @@ impl JointFrame {
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
     }
 
-    /// The centre of mass in the world, and the vector from it to the anchor in the frame of the body. A far anchor is
-    /// itself the centre, because the centre of a fixed body is arbitrary.
+    /// The centre of mass in the world, and the vector from it to the anchor in the frame of the body. With a far
+    /// anchor, the anchor serves as the centre, because the centre of a fixed body is arbitrary.
     pub(super) fn centre_and_arm(&self, body: &Body) -> (Vec2<Fx>, Vec2<Fx>) {
         if self.is_far() {
             (self.far_pose(body).centre, Vec2::ZERO)
@@ -199,7 +200,7 @@ impl JointFrame {
         }
     }
 
-    /// The pose of a fixed body about its far anchor, clamped to the range of positions.
+    /// The pose of a fixed body with its far anchor as the centre, clamped to the range of positions.
     pub(super) fn far_pose(&self, body: &Body) -> Pose {
         let place = body.transform().apply(self.anchor);
         let within = |x: Fx| x.clamp(-WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
@@ -260,7 +261,7 @@ impl JointDef {
         self
     }
 
-    /// Sets the stiffness in Hz, above 0, up to 1000, and the damping ratio, 0 to 100, of what the joint holds rigidly.
+    /// Sets the stiffness in Hz, above 0, up to 1000, and the damping ratio, 0 to 100, of the rigid parts of the joint.
     #[must_use]
     pub const fn softness(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
         self.softness = Some(Soft { hertz, damping_ratio });

@@ -38,7 +38,7 @@ pub struct Distance {
     /// Motor along the line: speed in m/s, positive if the anchors move apart, and largest force in N. It does not
     /// drive beyond `rod` or `limit`.
     pub motor: Option<Drive>,
-    /// Spring with a length in metres, 0 or more.
+    /// Spring whose target is a length in metres, 0 or more.
     pub spring: Option<Spring>,
     /// Smallest force of the spring in N, 0 or less, and largest, 0 or more. Positive forces push the anchors apart.
     pub spring_force: Option<JointLimit>,

@@ -3,13 +3,14 @@
 //! The impulse acts on both bodies at the pitch point, along the common tangent of the wheels. Axles may move: a planet
 //! gear on a turning arm is two hinges and a gear.
 //!
-//! With `NA` and `NB` teeth, the angles `a` and `b` of the frames and the angle `p` of the line from A's anchor to B's,
+//! With `NA` and `NB` teeth, the angles `a` and `b` of the frames and the angle `p` of the line from A's anchor to B's
+//! anchor, the error of the mesh is:
 //!
 //! ```text
 //! C = NA (a - p) + NB (b - p)        in teeth; wheels that turn against each other have teeth of the same sign
 //! ```
 //!
-//! is known up to whole teeth from the pose alone, because a turn of a wheel is a whole number of teeth. The mesh
+//! `C` is known up to whole teeth from the pose alone, because a turn of a wheel is a whole number of teeth. The mesh
 //! therefore does not drift. Wheels that are forced out of mesh by more than half a tooth skip a tooth.
 
 use serde::{Deserialize, Serialize};
@@ -36,7 +37,7 @@ fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<
 /// Wheels with teeth of the same sign are beside each other and turn in opposite directions. A wheel with a negative
 /// number of teeth is a ring around the other wheel. The two then turn the same way, as with a belt.
 ///
-/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body.
+/// The gear does not fix the distance of the wheels: give each wheel a hinge, to the ground or to a common body.
 /// [`World::fit_joint`](crate::world::World::fit_joint) sets the angles of the frames so that the teeth mesh.
 ///
 /// ```
@@ -91,9 +92,10 @@ impl Gear {
 
 /// A wheel on a rack: A turns about its anchor and rolls along the x axis of B's frame.
 ///
-/// The pitch line is at the distance `radius` to the right of the x axis. The joint holds no distance: give the wheel a
-/// hinge and the rack a slider. If the rack is fixed, give the wheel a [`Wheel`](crate::solver::Wheel) joint.
-/// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds.
+/// The pitch line is at the distance `radius` to the right of the x axis. The joint does not keep the wheel on the
+/// rack: give the wheel a hinge and the rack a slider. If the rack is fixed, give the wheel a
+/// [`Wheel`](crate::solver::Wheel) joint. [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that
+/// the joint has no position error.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
@@ -124,7 +126,7 @@ pub struct Rack {
 }
 
 impl Rack {
-    /// A rack for a wheel of a radius in metres.
+    /// A rack for a wheel with the given pitch radius in metres.
     #[must_use]
     pub const fn new(radius: Fx) -> Self {
         Rack { radius }

@@ -44,13 +44,13 @@ pub struct Motor {
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
     /// Pulls the anchors onto each other, with limited force in N and isotropic stiffness ([`Soft`]). The damping also
-    /// acts across the spring.
+    /// acts perpendicular to the spring.
     pub linear_spring: Option<Pull>,
-    /// Turns the frames parallel, with limited torque in N m.
+    /// Rotates the frames towards the same angle, with limited torque in N m.
     pub angular_spring: Option<Pull>,
 }
 
-/// A motor along both axes.
+/// A linear motor, which acts along both axes.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -121,7 +121,7 @@ impl Motor {
     option_builders! {
         /// Sets the target speed in rad/s and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors: frequency of two point masses in Hz, largest force in N.
+        /// Sets a spring between the anchors: frequency in Hz, as for two point masses, and largest force in N.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
         /// Sets a spring between the angles: frequency in Hz, largest torque in N m.

@@ -65,9 +65,9 @@ pub struct Drive {
 
 /// A damped spring with a target.
 ///
-/// On an angle, two free bodies swing with the frequency `hertz`. A body on a hinge away from its centre of mass swings
-/// more slowly. Along a line, the stiffness is `(2 pi hertz)^2 m` N/m, with `m` as for [`Soft`]. If the line does not
-/// pass through a centre of mass, the spring also turns the body, which swings faster.
+/// With a spring on an angle, two free bodies swing with the frequency `hertz`. A body on a hinge away from its centre
+/// of mass swings more slowly. The stiffness of a spring along a line is `(2 pi hertz)^2 m` N/m, with `m` as for
+/// [`Soft`]. If the line does not pass through a centre of mass, the spring also turns the body, which swings faster.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -97,14 +97,14 @@ pub struct Spring {
     pub target: Fx,
 }
 
-/// Frequency and damping ratio of a spring, or of what a joint holds rigidly
+/// Frequency and damping ratio of a spring, or of the rigid parts of a joint
 /// ([`JointDef::softness`](crate::solver::JointDef::softness)).
 ///
 /// With an angular spring, two free bodies swing with the frequency `hertz`. With a linear spring between anchors, two
-/// point masses do: the stiffness is `(2 pi hertz)^2 m` N/m in all directions. Here `m` is the reduced mass
-/// `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed body sags by
-/// `g / (2 pi hertz)^2`. If its anchor is off the centre of mass by `r`, across the pull, frequency and damping ratio
-/// are `sqrt(1 + r^2 / k^2)` times as large, with the radius of gyration `k`.
+/// point masses swing with this frequency: the stiffness is `(2 pi hertz)^2 m` N/m in all directions. Here `m` is the
+/// reduced mass `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed body sags by `g
+/// / (2 pi hertz)^2`. If its anchor is at the distance `r` from the centre of mass, perpendicular to the pull, the
+/// frequency and the damping ratio are `sqrt(1 + r^2 / k^2)` times as large, with the radius of gyration `k`.
 ///
 /// A linear spring stretched by `x` adds energy to a body of mass `M` if `(2 pi hertz / rate)^2 m x r / (M k^2)` is
 /// above about 1, at a sub-step rate of `rate`.

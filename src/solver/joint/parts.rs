@@ -24,7 +24,7 @@ pub(super) mod slot {
 /// The position on which a row of a joint acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
-    /// The angle of B's frame in A's.
+    /// The angle of B's frame relative to A's frame.
     Angle,
     /// The position of B's anchor along the x axis of A's frame.
     Along,
@@ -70,8 +70,8 @@ impl Parts<'_> {
         self.drive_within(direction, drive, None);
     }
 
-    /// Adds a motor that does not drive beyond a limit along the same direction. Otherwise the impulses of an unlimited
-    /// motor and of the limit would grow in every sub-step.
+    /// Adds a motor that does not drive beyond a limit along the same direction. If a motor of unlimited force pushed
+    /// against the limit, the impulses of both would grow in every sub-step.
     pub(super) fn drive_within(
         &mut self,
         direction: Direction,

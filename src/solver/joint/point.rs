@@ -10,7 +10,8 @@ use super::pose::JointPose;
 use crate::fx;
 use crate::math::{Fx, Speed, Unit, Vec2};
 
-/// Largest push in m/s of a spring of limited force. It is so large that velocities hardly turn the impulse.
+/// Largest push in m/s of a spring of limited force. The value is so large that the velocities of the bodies hardly
+/// change the direction of the impulse.
 const PUSH_MAX: Fx = fx!(1048576);
 
 #[derive(Clone, Copy, Debug)]

@@ -33,7 +33,7 @@ pub(super) struct Ends {
     inverse_gyration_a: Reciprocal,
     inverse_gyration_b: Reciprocal,
     fractions: MassFractions,
-    /// Vector from the centre of mass of A to that of B at the start of the tick.
+    /// Vector from A's centre of mass to B's centre of mass at the start of the tick.
     between: Vec2<Fx>,
     /// X axis of the joint's frame on A, in the frame of A.
     axis: Vec2<Unit>,
@@ -103,7 +103,7 @@ impl Ends {
         let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
         let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // Vectors from the anchors to that point, for B and for A.
+        // Vectors to that point from B's anchor and from A's anchor.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = pose.gap + to_b - to_a;
@@ -145,8 +145,8 @@ impl Ends {
         }
     }
 
-    /// The row and the position along an axis that turns with A. A's arm therefore reaches to B's anchor, unless it is
-    /// too long ([`JointPose::levers_at_one_point`]).
+    /// The row and the position along an axis that turns with A. The arm of A therefore ends at B's anchor, unless it
+    /// would be too long ([`JointPose::levers_at_one_point`]).
     fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);
@@ -194,9 +194,9 @@ impl JointPose {
         }
     }
 
-    /// Levers to one point, which conserve angular momentum. The point is B's anchor if it is in reach of A
-    /// ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise A's arm is shortened to this reach, and
-    /// the point is the end of the shortened arm. `None` if this point is not in reach of B.
+    /// Levers that end at one common point, and therefore conserve angular momentum. The point is B's anchor if it is
+    /// in reach of A ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise A's arm is shortened to
+    /// this reach, and the point is the end of the shortened arm. `None` if this point is not in reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);
@@ -209,7 +209,7 @@ impl JointPose {
     }
 }
 
-/// Largest component of a lever ratio, whose length is then below `RATIO_MAX`.
+/// Largest component of a lever ratio. The length of the lever ratio is then below `RATIO_MAX`.
 const REACH_MAX: Fx = fx!(88);
 
 fn longest_ratio(lever: Lever) -> Fx {

@@ -18,7 +18,8 @@ use crate::math::Fx;
 /// bodies has no other joint and the other body is not dynamic. With the default of 60 Hz, gravity opens the hinge of a
 /// rotor by 18 µm, or by 70 µm if the rotor has another joint.
 ///
-/// The angle is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns.
+/// The angle of the joint is the angle of B's frame relative to A's frame, in radians, counter-clockwise. It includes
+/// whole turns.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

@@ -37,8 +37,8 @@ use crate::math::{Fx, Ratio, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
-    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is that of
-    /// point masses.
+    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is the
+    /// softness between point masses.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
     /// `return_rate` is `massScale biasRate` of the joint.
@@ -61,7 +61,7 @@ pub(super) struct Measure {
     /// Units of the row per unit of the position: `s` for an angle, the factor of the directions for a pulley,
     /// otherwise 1.
     pub(super) scale: Fx,
-    /// For an axis that turns with A: the arms over the radii of gyration. Otherwise [`NO_REACH`].
+    /// For an axis that turns with A: the arms divided by the radii of gyration. Otherwise [`NO_REACH`].
     pub(super) reach: [Ratio; 2],
 }
 
@@ -77,7 +77,7 @@ pub(super) struct JointRow {
     bias: Speed,
     /// For a motor: `bias` in the relax pass.
     relax_bias: Speed,
-    /// Softness at the current pose for a spring, [`Softness::RIGID`] for a motor, otherwise that of the joint.
+    /// Softness at the current pose for a spring, [`Softness::RIGID`] for a motor, otherwise the softness of the joint.
     softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
@@ -141,7 +141,7 @@ impl JointRow {
         self.open
     }
 
-    /// The change of the impulse of a limit in one iteration, from an impulse of 0 and without bounds.
+    /// The change of the impulse of a limit in one iteration that starts from an impulse of 0 and has no bounds.
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
@@ -260,8 +260,8 @@ impl JointRow {
     }
 }
 
-/// The largest speed in m/s at which a limit may be approached: the limit is not passed within a sub-step. Beyond the
-/// limit, where `gap` is negative, the speed is `bias_rate` times the gap.
+/// The largest speed in m/s at which a limit may be approached without passing it within a sub-step. Beyond the limit,
+/// where `gap` is negative, the speed is `bias_rate` times the gap.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

@@ -32,7 +32,7 @@ pub(super) struct OwnJoints<'a> {
     pub(super) list: &'a mut JointList,
     pub(super) blocks: &'a mut Blocks,
     pub(super) turning: &'a [Turning],
-    /// For each body of the tick, its place in `turning` plus 1.
+    /// For each body of the tick, its index in `turning` plus 1; 0 if the body has no joint.
     pub(super) places: &'a [u32],
     /// Bodies of anchored hinges (see [`HingeShare`]).
     pub(super) anchored: &'a [u32],
@@ -159,5 +159,6 @@ struct Stretch {
 /// their initial energy with this limit, and 1.56 times with 0.1 radians (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 
-/// [`TURN_MAX`] for a body whose only joint is an anchored hinge. One iteration solves such a hinge exactly.
+/// The limit that replaces [`TURN_MAX`] for a body whose only joint is an anchored hinge. One iteration solves such a
+/// hinge exactly.
 const ANCHORED_TURN_MAX: Unit = Unit::lit("0.25");

@@ -34,11 +34,11 @@ pub struct Joint {
     /// Boxed, so that the data that every step changes is close together: saving this data is memory-bound.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
-    /// Angle of B's frame in A's when the joint was last solved, with whole turns, in units of 2^-32 turn.
+    /// Angle of B's frame relative to A's when the joint was last solved, with whole turns, in units of 2^-32 turn.
     pub(crate) turns: i64,
 }
 
-/// Accumulated impulses `L` for the warm start, by [`super::parts::slot`].
+/// Accumulated impulses `L` for the warm start, indexed by [`super::parts::slot`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
 
@@ -60,8 +60,8 @@ impl Joint {
     }
 
     /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same. Whole turns are
-    /// kept if the kind stays the same. A rack that fits better without them, as after [`JointDef::fitted`], loses
-    /// them.
+    /// kept if the kind stays the same. If a rack has a smaller position error without whole turns, as after
+    /// [`JointDef::fitted`], the whole turns are dropped.
     pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {
@@ -87,19 +87,19 @@ impl Joint {
         self.def.softness.map_or(tuning.joint, |soft| tuning.own_softness(soft.hertz, soft.damping_ratio))
     }
 
-    /// The definition, with all later changes.
+    /// The current definition, including all changes since the joint was added.
     #[must_use]
     pub const fn def(&self) -> &JointDef {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn, plus the number of whole turns that brings it nearest to
-    /// the last angle.
+    /// The angle of B's frame relative to A's in units of 2^-32 turn, plus the number of whole turns that brings this
+    /// angle nearest to the last angle.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }
 
-    /// The angle of B's frame in A's in radians, with whole turns.
+    /// The angle of B's frame relative to A's in radians, with whole turns.
     pub(crate) fn angle(&self, a: &Body, b: &Body) -> Fx {
         radians(self.turns(a.angle(), b.angle()))
     }

@@ -48,7 +48,7 @@ impl Weld {
     }
 
     option_builders! {
-        /// Makes the anchors soft, with the frequency in Hz of two point masses.
+        /// Makes the anchors soft, with a frequency in Hz, as for two point masses.
         linear(hertz, damping_ratio) => Soft { hertz, damping_ratio };
         /// Makes the angle soft, with a frequency in Hz.
         angular(hertz, damping_ratio) => Soft { hertz, damping_ratio };

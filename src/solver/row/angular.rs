@@ -67,7 +67,7 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     if sum == 0 {
         return Length::ZERO;
     }
-    // An even shift leaves 31 or 32 bits. Then the reciprocal has as many, and its root half as many. The root is
+    // An even shift leaves 31 or 32 bits. The reciprocal then has as many bits, and its root half as many. The root is
     // increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };

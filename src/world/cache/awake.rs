@@ -14,8 +14,8 @@ use crate::world::state::State;
 pub(crate) struct AwakeSet {
     /// Enabled bodies that are kinematic, or dynamic and awake.
     bodies: Vec<u32>,
-    /// Enabled joints between enabled bodies, of which at least one is dynamic, awake and has mass. Filter joints are
-    /// left out.
+    /// Enabled joints between two enabled bodies, at least one of which is dynamic, awake and has mass. Filter joints
+    /// are left out.
     joints: Vec<u32>,
     with_threshold: Vec<u32>,
     /// For each body slot, whether one of `joints` is attached to the body.

@@ -121,7 +121,7 @@ impl ContactCache {
         }
     }
 
-    /// Adapts the indices to a contact without a manifold that was inserted at `index`.
+    /// Adjusts the indices after a contact without a manifold was inserted at `index`.
     pub(crate) fn insert(&mut self, index: usize) {
         let NarrowPhaseOutput { contacts, touching, .. } = &mut self.output;
         let later = contacts.partition_point(|&contact| (contact as usize) < index);

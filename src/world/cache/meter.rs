@@ -1,4 +1,4 @@
-//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done.
+//! Work units: [`WorkMeter`] counts work whose amount is known only after it is done.
 
 use crate::collision::Contact;
 
@@ -9,7 +9,7 @@ const PAIRS_PER_BODY: u64 = 32;
 /// squares in one place.
 const CROWDED_WORK: u64 = 64;
 
-/// Work units of comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.
+/// Work units for comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
 /// Additional work units of a pair without a cached separating axis: measured on a hundred octagons in one place.
@@ -47,14 +47,14 @@ impl WorkMeter {
         self.spent <= self.max
     }
 
-    /// Counts a search for pairs. Returns the number of new pairs that the rest of the budget covers.
+    /// Counts a search for pairs. Returns the number of new pairs that the remaining budget covers.
     pub(crate) fn spend_search(&mut self, comparisons: u64) -> usize {
         self.spend(comparisons / COMPARED_PER_WORK);
         let pairs = self.max.saturating_sub(self.spent) / (NEW_PAIR_WORK + NARROW_PHASE_WORK);
         usize::try_from(pairs).unwrap_or(usize::MAX)
     }
 
-    /// Exhausts the budget, because its rest does not cover the next work.
+    /// Exhausts the budget, because the remaining budget does not cover the next work.
     pub(crate) fn exhaust(&mut self) {
         self.spent = self.spent.max(self.max.saturating_add(1));
     }

@@ -192,7 +192,7 @@ impl MotionRange<'_> {
     }
 }
 
-/// [`ShapeMotion::slack`] of a shape.
+/// The value of [`ShapeMotion::slack`] for a shape with these bounds.
 fn slack_of(bounds: Aabb) -> Step {
     let half = bounds.extents();
     narrow(half.x.max(half.y) / 16)
@@ -232,7 +232,8 @@ pub(crate) struct ClosingBound {
     pub(crate) margin: Length,
 }
 
-/// Approach within a tick, in metres, from which the ghost-collision filter checks whether shapes pass by each other.
+/// Smallest approach within a tick, in metres, for which the ghost-collision filter checks whether shapes pass by each
+/// other.
 pub(crate) const GHOST_TRAVEL_MIN: Step = Step::lit("0.0001");
 
 impl ClosingBound {

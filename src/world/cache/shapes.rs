@@ -52,8 +52,8 @@ impl ShapeCache {
         self.poses.motion()
     }
 
-    /// See [`BroadPhase::pairs`]. Finds at most as many pairs as the budget of work units allows to solve, in addition
-    /// to `known` pairs.
+    /// See [`BroadPhase::pairs`]. Finds at most `known` pairs plus the number of new pairs that the budget of work
+    /// units covers.
     pub(crate) fn find_pairs(
         &mut self,
         moved: Moved<'_>,

@@ -92,7 +92,8 @@ impl World {
         for pose in poses {
             check_position(pose.position)?;
         }
-        // All other errors come from the definitions and therefore occur before any body is added.
+        // All other errors depend only on the definitions. They therefore occur for the first pose, before any body is
+        // added.
         poses
             .iter()
             .map(|pose| self.spawn(&BodyDef { position: pose.position, angle: pose.angle, ..*body }, shapes))
@@ -118,7 +119,7 @@ impl World {
         self.prepare_mass(body, &mass);
         self.replace_mass(body.slot(), mass);
         let id = self.insert_shape(body, shape);
-        // If the centre of mass has moved, the positions of the other shapes are rounded differently.
+        // Updates all shapes of the body: if the centre of mass has moved, their positions are rounded differently.
         self.scratch.update_body(&self.state, body.slot());
         wake_overlapping_shape(&mut self.state, &mut self.scratch, id.slot());
         Ok(id)

@@ -47,7 +47,7 @@ impl World {
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
         self.replace_mass(body.slot(), mass);
-        // If the centre of mass has moved, the positions of the other shapes are rounded differently.
+        // Updates all shapes of the body: if the centre of mass has moved, their positions are rounded differently.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())
     }

@@ -7,7 +7,7 @@
 //!                   n  unit vector away from the centre of the explosion
 //! ```
 //!
-//! The formula is that of Box2D's `b2World_Explode`. The impulse acts at the point of the shape nearest to the centre,
+//! The formula comes from Box2D's `b2World_Explode`. The impulse acts at the point of the shape nearest to the centre,
 //! or at the middle of a shape that contains the centre.
 
 use alloc::vec::Vec;
@@ -128,8 +128,8 @@ impl Explosion {
         if strength == Fx::ZERO {
             return None;
         }
-        // If the centre is inside the shape, the nearest surface point gives no direction: uses the middle of the
-        // shape.
+        // If the centre is inside the shape, the nearest surface point gives no direction. The middle of the shape is
+        // used instead.
         let inside = contains_point(shape, Vec2::ZERO);
         let point = if inside { shape.middle() } else { found.point_a };
         let away = if inside { point.normalized() } else { Some(-found.normal) };

@@ -1,4 +1,5 @@
-//! Forces, impulses, velocities and poses of bodies. Each change wakes the body.
+//! Forces, impulses, velocities and poses of bodies. Each change wakes the body, unless the new velocity of a kinematic
+//! body is 0.
 
 use alloc::boxed::Box;
 
@@ -167,7 +168,8 @@ impl World {
     }
 
     /// Teleports a body: sets the position of its origin in metres, and its rotation. Contacts and joints that still
-    /// exist afterwards keep their impulses for warm starting.
+    /// exist afterwards keep their impulses for warm starting. Cancels a target of [`World::move_to`], with the
+    /// velocity towards it.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or the position is out of range.

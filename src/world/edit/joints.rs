@@ -1,7 +1,7 @@
-//! Changing joints.
+//! Changes to joints.
 //!
-//! Setting a value that a joint already has does not wake its bodies, so that a machine whose motors are set in every
-//! tick can fall asleep.
+//! Setting a value that a joint already has does not wake its bodies, so a machine whose motors are set in every tick
+//! can fall asleep.
 
 use alloc::vec::Vec;
 

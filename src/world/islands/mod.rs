@@ -1,13 +1,14 @@
 //! Sleeping islands: waking and putting to sleep, for the step and for edits between ticks.
 //!
-//! A body is sleepy once it has been slower than its `sleep_speed` for half a second, if its settings and those of the
-//! world let it sleep. An island is a set of dynamic bodies that contacts, joints and areas connect. It falls asleep
-//! when all its bodies are sleepy, or when an edit puts one of them to sleep. It wakes as a whole when an active body
-//! touches one of its bodies, when an area of an active body begins to act on one, or when an edit may disturb it. Such
-//! an edit changes one of its bodies or joints, a body that overlaps one of its bodies or is joined to one, or a
-//! setting that affects the balance of forces.
+//! A body is sleepy once it has been slower than its `sleep_speed` for half a second, if its settings and the settings
+//! of the world let it sleep. An island is a set of dynamic bodies that contacts, joints and areas connect. It falls
+//! asleep when all its bodies are sleepy, or when an edit puts one of them to sleep. A whole island wakes in three
+//! cases: an active body touches one of its bodies, an area of an active body begins to act on one of its bodies, or an
+//! edit may disturb the island. Such an edit changes a body or joint of the island, another body that overlaps or is
+//! joined to a body of the island, or a setting that affects the balance of forces.
 //!
-//! Bodies that touch a moving kinematic body, are joined to one, or are in an area of one do not become sleepy.
+//! A body does not become sleepy while it touches a moving kinematic body, is joined to one, or is inside an area of
+//! one.
 
 mod sleep;
 mod wake;

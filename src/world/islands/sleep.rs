@@ -6,7 +6,8 @@ use crate::math::{Fx, Vec2};
 use crate::world::cache::{AwakeSet, NARROW_PHASE_WORK, Scratch, UnionFind, is_awake, merge_sorted};
 use crate::world::state::{Island, State};
 
-/// Puts a body to sleep with the awake bodies connected to it, unless a joint connects them to a moving kinematic body.
+/// Puts a body to sleep with the awake bodies connected to it, unless a joint connects one of these bodies to a moving
+/// kinematic body.
 pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.awake.refresh(state);
     scratch.pairs.non_colliding.refresh(state);
@@ -19,7 +20,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
             continue;
         }
         meter.spend(NARROW_PHASE_WORK);
-        // Edits since the last tick may have parted the bodies.
+        // Edits since the last tick may have moved the bodies apart.
         let reach = if contact.count > 0 { state.config.speculative_distance } else { Fx::ZERO };
         if pairs.non_colliding.may_touch(state, contact.shapes)
             && shapes.poses().are_within(contact.shapes, reach)
@@ -106,8 +107,8 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
     }
     if any {
         scratch.awake.invalidate();
-        // Fat boxes may have ceased to overlap since the last pair update, so that the next one must check the sleeping
-        // contacts.
+        // Fat boxes may have ceased to overlap since the last pair update. The next pair update must therefore check
+        // the sleeping contacts.
         scratch.pairs.changes.sleeping_contacts_changed();
         put_contacts_to_sleep(state, scratch);
     }

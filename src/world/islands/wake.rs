@@ -9,7 +9,7 @@ use crate::world::state::State;
 /// Number of visited boxes that together cost one work unit.
 const VISITS_PER_WORK: u64 = 4;
 
-/// Wakes an island, whose sleeping contacts become active at the next pair update.
+/// Wakes an island. Its sleeping contacts become active at the next pair update.
 pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: IslandId) {
     let Some(island) = state.islands.remove(island) else { return };
     for slot in island.bodies {
@@ -23,7 +23,7 @@ pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: Isla
 }
 
 /// Wakes a body with its island, and restarts its count of ticks at rest. A resting kinematic body becomes active for
-/// one tick, and so wakes all islands on it.
+/// one tick, and thereby wakes all islands that touch it.
 pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.pairs.changes.compact();
     let body = state.bodies.at_mut(slot);
@@ -46,8 +46,8 @@ fn wake_dynamic(state: &mut State, scratch: &mut Scratch, slot: u32) {
     }
 }
 
-/// Restarts the counts of ticks at rest of two bodies that have parted. A slow body that the other one supported would
-/// otherwise fall asleep before it begins to move.
+/// Restarts the counts of ticks at rest of two bodies that no longer touch. A slow body that has lost its support would
+/// otherwise fall asleep before it begins to fall.
 pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     for shape in [a, b] {
         let slot = state.shapes.at(shape).body().slot();

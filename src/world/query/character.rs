@@ -13,7 +13,7 @@
 //! character by as much as the point under its feet has moved since then. The velocity of the body would not be
 //! sufficient: it is 0 after [`World::move_to`], and does not give the displacement of a platform that turns or stops.
 //! A character that leaves its ground takes the velocity of the body along. If the velocity of a kinematic body is 0,
-//! the character takes the body's displacement since the last move instead, as if it were that of one tick.
+//! the character takes the body's displacement since the last move instead, as if it were the displacement in one tick.
 
 use alloc::vec::Vec;
 
@@ -153,8 +153,8 @@ pub struct MoverState {
     pub velocity: Vec2<Fx>,
     /// The ground that the character stands on, if any.
     pub ground: Option<MoverPlane>,
-    /// Whether the character overlaps a shape that is solid from one side. It then passes through until it has left the
-    /// shape.
+    /// Whether the character overlaps a shape that is solid from one side. The character then passes through the shape
+    /// until it has left the shape.
     pub is_passing: bool,
 }
 
@@ -217,8 +217,8 @@ impl World {
     ///
     /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
     /// the surface speed of a belt. Call this after each [`World::step`]. Otherwise the character lags behind its lift,
-    /// and is too fast when it leaves a body that [`World::move_to`] moves: the displacement of several ticks counts as
-    /// that of one.
+    /// and is too fast when it leaves a body that [`World::move_to`] moves: the displacement in several ticks counts as
+    /// the displacement in one tick.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

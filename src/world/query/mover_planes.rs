@@ -145,7 +145,7 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 /// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
 /// `push`.
 ///
-/// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. If not,
+/// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. Otherwise
 /// the planes push in turn. This iteration converges for two planes whose normals differ by 25 to 155 degrees. At other
 /// angles, or between two walls, the result may be behind a plane: check it by a cast.
 #[must_use]

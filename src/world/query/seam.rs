@@ -6,8 +6,8 @@
 //!
 //! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. A surface that
 //! the cast moves into stops the cast, so that the shape is not lifted off this surface. Between a floor and a ceiling
-//! the shape cannot be lifted off both. Each of several touched surfaces therefore gets another cast, for which the
-//! shape is lifted off this surface alone.
+//! the shape cannot be lifted off both. If several surfaces are touched, there is therefore one more cast for each of
+//! them, for which the shape is lifted off that surface alone.
 
 use smallvec::SmallVec;
 
@@ -49,9 +49,9 @@ impl Rest {
     const SKIN_MAX: Fx = SKIN.saturating_add(SKIN_TOLERANCE);
 
     /// Distance in metres by which a cast along a translation approaches a surface, or `None` if it moves into the
-    /// surface. Sliding allows half a millimetre per metre, because the bodies of a pile are parallel to within 0.1 mm
-    /// per metre. A margin of 1 µm per metre covers the sides of rotated tiles, which are parallel to within 0.5 µm per
-    /// metre.
+    /// surface. A cast that slides along a surface may approach it by half a millimetre per metre, because the bodies
+    /// of a pile are parallel to within 0.1 mm per metre. A margin of 1 µm per metre covers the sides of rotated tiles,
+    /// which are parallel to within 0.5 µm per metre.
     fn approach(self, normal: Vec2<Unit>, translation: Vec2<Fx>) -> Option<Fx> {
         let length = translation.length();
         let approach = normal.widen().dot(translation).saturating_neg().max(Fx::ZERO);
@@ -75,8 +75,8 @@ pub(super) struct Resting {
 }
 
 impl Resting {
-    /// Confirms a hit; `None` if it is a seam. Takes the normal and the point from a second cast, because the first may
-    /// have met a corner below the surface.
+    /// Confirms a hit; `None` if it is a seam. Takes the normal and the point from a second cast, because the first
+    /// cast may have met a corner below the surface.
     pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
         let mut confirmed = None;
         for &lift in &self.lifts {

@@ -51,7 +51,7 @@ impl Walk<'_> {
         // An edge that the character is just leaving may be below its feet by the gap of a cast.
         let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
         let found = self.world.cast_ray(above, down, self.filter);
-        // Ground below the surface may be the floor under a table.
+        // Ground far below the touched point may be the floor under a table.
         let is_edge = |ground: Vec2<Fx>| plane.point.y <= ground.y.saturating_add(STEP_DEPTH);
         found.is_some_and(|hit| {
             self.mover.is_ground(hit.normal)

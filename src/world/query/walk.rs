@@ -97,8 +97,8 @@ impl<'a> Walk<'a> {
             self.advance(hit.map_or(by, |(travelled, _)| travelled));
         }
         // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
-        // velocity of a kinematic body is 0, the displacement counts as that of one tick. This is meant for a body
-        // moved by `World::move_to`, but also applies to a body at rest that `World::set_transform` has placed
+        // velocity of a kinematic body is 0, the displacement counts as the displacement in one tick. This is meant for
+        // a body moved by `World::move_to`, but also applies to a body at rest that `World::set_transform` has placed
         // elsewhere.
         let mut velocity = body.velocity_at(ground.point);
         if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
@@ -136,7 +136,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Moves the character at its own velocity plus that of a belt: along the ground, or freely.
+    /// Moves the character at its own velocity plus the surface speed of a belt: along the ground, or freely.
     pub(super) fn walk(&mut self) {
         let translation = in_tick(self.world, self.from.velocity);
         let Some(ground) = self.from.ground else { return self.slide(translation) };

@@ -28,7 +28,7 @@ const BOX_BYTES: usize = 16;
 /// Number of bodies in a block. The boxes of a block are packed right after its bodies, while the centres of the bodies
 /// are in the processor's cache.
 const BLOCK: usize = 32;
-/// Marker in place of the first coordinate of a box that follows in full.
+/// Marker in place of the first coordinate of a box that is stored in full after the records.
 const NOT_NEAR: i32 = i32::MIN;
 
 type Bodies = Arena<Body, BodyId>;
@@ -238,7 +238,8 @@ fn corners(fat: Aabb) -> [Fx; 4] {
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     const GRID: i64 = 1 << FAT_GRID_SHIFT;
     const LOWEST: i64 = (i32::MIN as i64) << FAT_GRID_SHIFT;
-    /// Mask of the bits that may be set in the difference of a packable coordinate and the lowest packable one.
+    /// A coordinate can be packed if its difference from the lowest packable coordinate has no bits outside of this
+    /// mask.
     const NEAR: i64 = (u32::MAX as i64) << FAT_GRID_SHIFT;
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));

@@ -43,7 +43,7 @@ fn has_impulses(contact: &Contact) -> bool {
     contact.count != 0 || contact.rolling != 0
 }
 
-/// Packs the head of a contact. Slots are below 2^21, so that they fit.
+/// Packs the head of a contact. Slots are below 2^21 and therefore fit.
 fn head(contact: &Contact) -> u64 {
     let (a, b) = contact.shapes;
     u64::from(a) << 34

@@ -90,7 +90,7 @@ impl<'a> Writer<'a> {
         Writer { bytes, len: 0 }
     }
 
-    /// Appends a record of at most `N` bytes: those that `write` puts into it.
+    /// Appends a record of at most `N` bytes, which `write` fills.
     #[inline(always)]
     pub(super) fn record<const N: usize>(&mut self, write: impl FnOnce(&mut Record<'_, N>)) {
         if self.bytes.len() < self.len + N {

@@ -27,9 +27,9 @@ pub(super) struct Stale {
 }
 
 impl World {
-    /// Restores a saved state, also of another world. With the same edits, the following ticks are bit-identical to
-    /// those that followed the save. [`World::contacts`], [`World::events`] and [`World::stats`] are empty until the
-    /// next tick.
+    /// Restores a saved state, which may come from another world. With the same edits, the following ticks are
+    /// bit-identical to the ticks that followed the save. [`World::contacts`], [`World::events`] and [`World::stats`]
+    /// are empty until the next tick.
     #[doc(alias = "rollback")]
     #[doc(alias = "load")]
     pub fn restore(&mut self, snapshot: &Snapshot) {
@@ -44,7 +44,7 @@ impl World {
     }
 }
 
-/// Replaces a state by that of a snapshot, and lists in `stale` the slots that change.
+/// Replaces a state by the state of a snapshot, and lists in `stale` the slots that change.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;

@@ -94,7 +94,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         range.contains(&v.x) && range.contains(&v.y)
     };
     // Edits keep the origin of a body within the world extent, and ticks keep its centre of mass there. The tolerance
-    // covers the distance between the two.
+    // covers the distance between the origin and the centre of mass.
     let reach = Vec2::new(REACH_MAX * 8, REACH_MAX * 8);
     let nearly_inside = |v: Vec2<Fx>| inside(v.max(-v) - reach);
     check(nearly_inside(body.centre), || at("outside the world"))?;

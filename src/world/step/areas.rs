@@ -12,7 +12,7 @@ use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
 use crate::world::state::State;
 
-/// Slots of a body, an area and a shape of the body. Effects are summed in sorted order.
+/// Slots of a body, an area and a shape of the body. Effects are summed in the sorted order of these triples.
 type Visitor = [u32; 3];
 
 /// Lets areas act on awake bodies with mass, once the solver has their velocities.
@@ -85,7 +85,7 @@ struct Sum<'a> {
     effect: AreaEffect,
     /// Acceleration in m/s² that acts on the medium as well as on the body.
     field: Vec2<Fx>,
-    /// Whether one of the areas is moved by its kinematic body.
+    /// Whether one of the areas belongs to a moving kinematic body.
     is_on_moving_ground: bool,
 }
 

@@ -162,8 +162,8 @@ fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &(slot, pose) in &finalised.others {
         move_body(state, scratch, slot, pose);
     }
-    // With several threads, `swept` is empty here. A single thread sweeps and moves each body at once, while it is
-    // cached.
+    // With several threads, `swept` is empty here. A single thread sweeps and moves each body immediately, while the
+    // body is in the processor's cache.
     finalised.swept.iter().for_each(|swept| continuous::sweep(state, scratch, swept));
     scratch.results.stats.impacts += finalised.impacts;
     scratch.sweeps.relative.extend_from_slice(&finalised.relative);

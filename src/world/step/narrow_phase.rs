@@ -60,7 +60,7 @@ struct Job<'a> {
     first: u32,
 }
 
-/// The near contacts of a block, whose shapes may meet within the tick: one bit each.
+/// The near contacts of a block (their shapes may meet within the tick), as bit masks with one bit for each contact.
 #[derive(Clone, Copy)]
 struct NearContacts {
     /// Index in the job of the first contact.
@@ -171,7 +171,7 @@ impl NarrowPhase<'_> {
     }
 
     /// Completes the manifolds of near contacts, keeps those with points, and lists the touching pairs. `touched` lists
-    /// touching pairs of the last tick, sorted by pair. Returns its rest, for the next block.
+    /// touching pairs of the last tick, sorted by pair. Returns the remaining part of `touched`, for the next block.
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,

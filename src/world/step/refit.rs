@@ -1,4 +1,5 @@
-//! Fat boxes: every shape that may leave its fat box in the tick at its current velocity gets a new fat box.
+//! Fat boxes: every shape that may leave its fat box in the tick at its current velocity, or whose fat box is much too
+//! large, gets a new fat box.
 //!
 //! The swept AABB of a shape is its AABB, extended by the translation of its body, by the largest movement through
 //! rotation, and by the speculative distance.
@@ -17,8 +18,8 @@ use crate::world::cache::{
 use crate::world::derived::fattened;
 use crate::world::state::State;
 
-/// Largest distance, in margins, between a fat box and the swept AABB. Without this limit, a shape that was fast would
-/// keep a large fat box with many pairs.
+/// Largest distance between a fat box and the swept AABB, as a multiple of the margin. Without this limit, a shape that
+/// was fast would keep a large fat box with many pairs.
 const MARGINS_MAX: i64 = 4;
 
 /// Predicts motion, and gives new fat boxes to the shapes that need them.

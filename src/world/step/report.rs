@@ -9,7 +9,8 @@ pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
     for (&slot, &start) in awake.bodies().iter().zip(&sweeps.starts) {
         let body = state.bodies.at(slot);
         let fell_asleep = body.is_asleep();
-        // A kinematic body may carry a body that the solver has not moved.
+        // Poses are compared because continuous collision may move a body that the solver has not moved: a kinematic
+        // body that stops another body carries it.
         if fell_asleep || body.pose() != start {
             let (position, angle) = (body.position(), body.angle());
             let body = state.bodies.handle_at(slot);

@@ -61,7 +61,7 @@ fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
 
 #[inline(always)]
 fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) {
-    // Reads the velocity of the solver, because that in the state is 0 after the body has reached its target.
+    // Reads the velocity of the solver, because the velocity in the state is 0 after the body has reached its target.
     let has_moved = || {
         let solved = scratch.solver.body(ground);
         solved.velocity != Vec2::ZERO || solved.spin != 0

@@ -75,8 +75,8 @@ pub struct ContactForce {
 
 impl World {
     /// Returns the contacts of the last tick that had points, sorted by pair, as found at the start of the tick.
-    /// Contacts that an edit has ended and those of bodies that have fallen asleep are left out. Empty after a restore
-    /// until the next tick.
+    /// Leaves out contacts that an edit has ended, and contacts of bodies that have fallen asleep. Empty after a
+    /// restore until the next tick.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let output = self.scratch.contacts.output();
@@ -129,7 +129,7 @@ impl ContactView<'_> {
     }
 
     /// The mass that a force between the bodies accelerates: `mA mB / (mA + mB)` in kg. Bodies that are not dynamic or
-    /// have no mass count as infinitely heavy. 0 if both do.
+    /// have no mass count as infinitely heavy. The result is 0 if both bodies count as infinitely heavy.
     #[must_use]
     pub fn reduced_mass(&self) -> Fx {
         self.world.state.reduced_mass(self.contact.shapes)

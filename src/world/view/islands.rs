@@ -22,7 +22,7 @@ impl World {
             unite(state, &mut union, a.slot(), b.slot());
         }
         unite_touching(state, &mut union, &state.contacts);
-        // Contacts of bodies that were woken since the last tick are still in this list.
+        // Contacts of bodies that were woken since the last tick are still in `sleeping_contacts`.
         unite_touching(state, &mut union, &state.sleeping_contacts);
         for (_, island) in state.islands.iter() {
             island.bodies.windows(2).for_each(|pair| union.unite(pair[0], pair[1]));

@@ -13,8 +13,8 @@ impl World {
         Some((a.transform().apply(def.frame_a.anchor), b.transform().apply(def.frame_b.anchor)))
     }
 
-    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise, including full turns. Turns are
-    /// counted while the joint acts on a dynamic body.
+    /// Returns the angle of B's frame relative to A's frame in radians, counter-clockwise, including full turns. Turns
+    /// are counted while the joint acts on a dynamic body.
     #[must_use]
     pub fn joint_angle(&self, id: JointId) -> Option<Fx> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -28,7 +28,7 @@ impl World {
         Some(b.angular_velocity().saturating_sub(a.angular_velocity()))
     }
 
-    /// Returns the position of B's anchor in A's frame of the joint, in metres. `x` is the translation of prismatic and
+    /// Returns the position of B's anchor in the joint's frame on A, in metres. `x` is the translation of prismatic and
     /// wheel joints.
     #[must_use]
     pub fn joint_translation(&self, id: JointId) -> Option<Vec2<Fx>> {
@@ -37,7 +37,7 @@ impl World {
         Some(joint.axes(a).apply_inverse_wide(to - from))
     }
 
-    /// Returns the velocity of B's anchor relative to A, in A's frame of the joint, in m/s.
+    /// Returns the velocity of B's anchor relative to A, in the joint's frame on A, in m/s.
     #[must_use]
     pub fn joint_velocity(&self, id: JointId) -> Option<Vec2<Fx>> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -57,7 +57,7 @@ impl World {
     /// the axis for a prismatic or wheel joint, the deviation from the allowed lengths for a distance joint, the
     /// distance of the teeth along the pitch line for a gear or rack, and the missing length of the rope for a pulley.
     /// For a gear without a pitch point, the error is an angle in radians. Springs, motors and the limits of other
-    /// kinds do not count.
+    /// kinds do not count: the error of a weld with soft anchors is 0.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {

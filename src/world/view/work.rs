@@ -24,10 +24,10 @@ impl World {
     /// [`Game::work`](crate::lockstep::Game::work) can be based on the result.
     ///
     /// The bound is the number of bodies, pairs and joints, times the solver's sub-steps and iterations, plus 4 for
-    /// each pair, 1 for each shape, 1/16 for each slot of a handle, and 8 for the tick. In the product, each pair
-    /// beyond 32 per body counts as 65. The bound does not include the work of finding pairs and of solving new pairs
-    /// and the pairs of woken bodies. A verifier counts this work during the tick, if
-    /// [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
+    /// each pair, 1 for each shape, 1/16 for each slot of a body, shape, joint or island (including free slots), and 8
+    /// for the tick. In the product, each pair beyond 32 per body counts as 65. The bound does not include the work of
+    /// finding pairs and of solving new pairs and the pairs of woken bodies. A verifier counts this work during the
+    /// tick, if [`Game::world_mut`](crate::lockstep::Game::world_mut) gives access to the world.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -63,9 +63,9 @@ impl World {
         u64::try_from(slots.iter().sum::<usize>() / SCANNED_PER_WORK).unwrap_or(u64::MAX)
     }
 
-    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, the search for
+    /// Starts to count work whose amount is known only after it is done, such as sweeps of fast bodies, the search for
     /// pairs, new and woken pairs, joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may
-    /// be skipped, so that the state may be wrong from then on.
+    /// be skipped, so the state may be wrong from then on.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }

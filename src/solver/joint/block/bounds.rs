@@ -1,9 +1,10 @@
-//! Units with bounds in a block: limits, whose impulses are not negative, and motors and springs of limited force.
+//! Units (`unit.rs`) with bounds in a block: limits, whose impulses are not negative, and motors and springs of limited
+//! force.
 //!
 //! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
 //! the units without bounds. Then it deactivates the active units beyond a bound, and holds them at that bound. The
-//! rounds end when no active unit is beyond a bound. Among the motors, the first [`ROUNDS_MAX`] rounds deactivate only
-//! those that are furthest beyond their bounds.
+//! rounds end when no active unit is beyond a bound. The first [`ROUNDS_MAX`] rounds deactivate only the motors that
+//! are furthest beyond their bounds, and no other motors.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -28,10 +29,10 @@ pub(super) struct BoundedUnit {
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
 /// `S^2` of a motor, with 30 fraction bits. It is closer to 1 than [`OPEN_SCALE`], because the error of the speed is
-/// the impulse times `1 - S^2`, and impulses under leverage are large.
+/// the impulse times `1 - S^2`, and impulses at long lever arms are large.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of initial rounds that deactivate, among the motors, only those furthest beyond their largest force.
+/// Number of initial rounds that deactivate only the motors furthest beyond their largest force, and no other motors.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
@@ -45,7 +46,7 @@ impl Block {
     ) {
         self.want(pass, hinges, list, poses, context);
         self.activate(pass, hinges, list);
-        // A unit that is held at a bound stays held, so that the loop ends.
+        // The loop ends, because a unit that is held at a bound stays held.
         for round in 0.. {
             if self.hold(context) {
                 self.want(pass, hinges, list, poses, context);

@@ -44,7 +44,7 @@ pub(in super::super) struct Candidate {
     /// Whether the joint has rows besides the row of a motor.
     pub(in super::super) holds: bool,
     pub(in super::super) is_hinge: bool,
-    /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
+    /// Reduced mass in kg: `1 / (1 / M + 1 / M')` for bodies of the masses `M` and `M'`.
     pub(in super::super) reduced_mass: Fx,
     /// Shares of the bodies at the point of a revolute joint; 0 for other joints.
     pub(in super::super) shares: [Unit; 2],
@@ -121,14 +121,14 @@ struct JointsOfBody {
     /// For each range, the first joint that is not in a block yet.
     next: [u32; JOINT_ROWS_MAX],
     ends: [u32; JOINT_ROWS_MAX],
-    /// The last walk that has visited the body.
+    /// Number of the last walk that visited the body.
     walk: u32,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Choice {
     crowds: Vec<Crowd>,
-    /// Place of each body in `bodies`, or [`NOT_CROWDED`].
+    /// Index of each body in `bodies`, or [`NOT_CROWDED`].
     places: Vec<u32>,
     bodies: Vec<JointsOfBody>,
     of_body: Vec<u32>,
@@ -172,8 +172,8 @@ impl Choice {
 
     /// Adds a block of joints that crowded bodies connect with `start`.
     fn add_block(&mut self, candidates: &[Candidate], start: u32) {
-        // The first walk finds a joint at the rim of the block. The order that starts at this joint gives the matrix a
-        // narrow envelope (`matrix.rs`).
+        // The last joint of the first walk is at the rim of the block. The order that starts at this joint gives the
+        // matrix a narrow envelope (`matrix.rs`).
         self.walk(candidates, start);
         let rim = self.queue.last().copied().unwrap_or(start);
         for &joint in &self.queue {
@@ -264,7 +264,7 @@ impl Choice {
     }
 
     /// Adds the joints of a body to the walk, in ascending order. Takes and returns the number of rows in the walk.
-    /// This number only grows during a walk, so that a joint that does not fit is not tried again.
+    /// This number only grows during a walk, so a joint that does not fit is not tried again.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

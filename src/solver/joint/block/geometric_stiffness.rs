@@ -3,10 +3,10 @@
 //! A force `F` that pulls a body outwards at an arm `r` exerts a restoring torque with the stiffness `F . r`, as on a
 //! pendulum. If this torque is computed from the pose at the start of each sub-step, the body is a kicked rotor with
 //! the kick `kappa = h^2 F . r / I`, whose energy grows if `kappa` is above about 1 (B. Chirikov, "A universal
-//! instability of many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the
-//! impulses of its block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews,
-//! M. Teichmann and P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force
-//! of the last sub-step.
+//! instability of many-dimensional oscillator systems", 1979). A body whose kick is above [`KICK_MIN`] therefore
+//! responds to the impulses of its block with the inertia `I + h^2 F . r`, as in a step that is implicit in the
+//! rotation (S. Andrews, M. Teichmann and P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics",
+//! 2017). `F` is the force of the last sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -35,7 +35,7 @@ pub(super) enum Leverage {
 }
 
 impl Leverage {
-    /// The change of the torque of an impulse per radian, over the radius of gyration.
+    /// The change of an impulse's torque per radian of rotation, divided by the radius of gyration.
     fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
         let [x, y] = impulse.map(i128::from);
         let product = match self {

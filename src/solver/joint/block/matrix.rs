@@ -114,7 +114,7 @@ impl Factor {
     }
 }
 
-/// The product of two rows of a factor, with 60 fraction bits. The sum may wrap after a pivot was clamped.
+/// The product of two rows of a factor, with 60 fraction bits. The sum may wrap if a pivot has been clamped.
 fn dot(a: &[i32], b: &[i32]) -> i64 {
     a.iter().zip(b).map(|(&a, &b)| i64::from(a) * i64::from(b)).fold(0, i64::wrapping_add)
 }

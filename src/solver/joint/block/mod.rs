@@ -11,7 +11,7 @@
 //! S_i = sqrt(massScale_i),   (1 - S^2 + S A S) z = w / S,   d = S z
 //! ```
 //!
-//! The scale of a spring between two points contains its softness, so that its `S` is 1.
+//! The scale of a spring between two points contains its softness, so its `S` is 1.
 //!
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies and `m_least`
 //! the smallest reduced mass in the block, because the matrix is symmetric for impulses but not for speeds.
@@ -234,7 +234,7 @@ impl Block {
             for (earlier, other) in (0..=at).zip(units.iter()) {
                 if earlier == at || unit.touches(other) {
                     first = first.min(other.row);
-                    // The scale of a spring has diagonalised its two rows.
+                    // The scaling of a spring between two points already makes its two rows independent.
                     if earlier != at || !unit.is_point_spring() {
                         pairs.push((at, earlier));
                     }
@@ -310,7 +310,7 @@ impl Block {
     }
 }
 
-/// Number of fraction bits that the numbers of a block have in addition to those of a speed.
+/// Number of additional fraction bits of the numbers of a block, compared with a speed.
 const EXTRA_BITS: u32 = 32 - Speed::FRAC_NBITS;
 
 /// Scalar product with 60 fraction bits.

@@ -1,4 +1,4 @@
-//! Factors of the rows of a block before and after its equations are solved.
+//! Factors by which the rows of a block are multiplied before and after its equations are solved.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! Scales rows and point blocks so that their diagonal blocks of the matrix are identities.
+//! Scales rows and point blocks so that the diagonal blocks of the matrix are identities.
 //!
 //! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` relates an impulse (times the
 //! sum of the inverse masses) to the change of velocity. With a lower triangular `R` and `K = R R^T`:
@@ -7,7 +7,7 @@
 //! H = R^-1 sqrt(a) J,    sum H H^T = 1,    A = H H'^T + ...   for each body that two rows share
 //! ```
 //!
-//! Entries of `H` are at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
+//! Entries of `H` are at most 1. Impulses, which are stored as speeds, are scaled by `R^-1` and scaled back by `R`.
 //!
 //! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by
 //! `impulseScale K p`. Its softness is therefore part of its scale, and `S = 1`:
@@ -144,7 +144,7 @@ pub(super) fn length(v: [i64; 2]) -> i128 {
     (x + y).isqrt().cast_signed()
 }
 
-/// `sqrt(x)` and `1 / sqrt(x)`. All have 30 fraction bits, and `x` counts as at least 2^-24.
+/// `sqrt(x)` and `1 / sqrt(x)`. All numbers have 30 fraction bits, and an `x` below 2^-24 is replaced by 2^-24.
 pub(super) fn root_and_inverse(x: i64) -> (i64, i64) {
     let x = x.max(1 << 6).unsigned_abs();
     // An even shift fills 63 or 64 bits, so that the root has 32 bits.

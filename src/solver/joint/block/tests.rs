@@ -109,7 +109,7 @@ fn chosen(candidates: &[Candidate]) -> Vec<u32> {
 #[test]
 fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
     let half = Unit::lit("0.5");
-    // A single weld, a chain of equal hinges, and a body in cloth.
+    // Not chosen: a single weld, a chain of equal hinges, and a body in cloth.
     assert_eq!(chosen(&[weld([1, 2])]), Vec::<u32>::new());
     assert_eq!(chosen(&[hinge([1, 2], half), hinge([2, 3], half), hinge([3, 4], half)]), Vec::<u32>::new());
     assert_eq!(chosen(&[2, 3, 4, 5].map(|limb| hinge([1, limb], half))), Vec::<u32>::new());

@@ -49,7 +49,8 @@ pub(super) struct Unit {
     angle_scaling: Scaling,
     pub(super) leverage: Leverage,
     is_limited: bool,
-    /// Denominator of the effective mass with geometric stiffness over that without, with 30 fraction bits.
+    /// Denominator of the effective mass with geometric stiffness, divided by the denominator without it, with 30
+    /// fraction bits.
     stiffened: i64,
 }
 
@@ -180,7 +181,8 @@ impl Unit {
         }
     }
 
-    /// For each row, the change of its impulse (a speed) if an iteration solved this row alone, from an impulse of 0.
+    /// For each row, the change of its impulse (a speed) if an iteration solved this row alone, starting from an
+    /// impulse of 0.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -363,7 +365,7 @@ impl Unit {
         }
     }
 
-    /// The magnitude of an impulse over the largest impulse of the motor, rounded down.
+    /// The magnitude of an impulse divided by the largest impulse of the motor, rounded down.
     pub(super) fn excess(&self, impulse: i64, hinges: &HingeSet, list: &JointList) -> u64 {
         let [_, max] = self.bounds(hinges, list);
         impulse.unsigned_abs() / max.unsigned_abs().max(1)

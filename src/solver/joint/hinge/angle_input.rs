@@ -119,7 +119,7 @@ pub(super) struct SpringInput {
     pub(super) impulse_scale: Unit,
     /// Target angle in units of 2^-32 turn.
     pub(super) target: i64,
-    /// Push, a speed, per turn from the target: `massScale biasRate 2 pi s`.
+    /// Push per turn of distance from the target, as a speed: `massScale biasRate 2 pi s`.
     pub(super) stiffness: Fx,
     /// Largest impulse; 0 if impulses turn neither body.
     pub(super) max: Speed,
@@ -141,9 +141,9 @@ pub(super) struct LimitInput {
     pub(super) lower: i64,
     /// Upper limit in units of 2^-32 turn.
     pub(super) upper: i64,
-    /// Push, a speed, per turn beyond a limit: `massScale biasRate 2 pi s`.
+    /// Push per turn beyond a limit, as a speed: `massScale biasRate 2 pi s`.
     pub(super) closed: Fx,
-    /// Speed that reaches a limit within a sub-step, per turn of the distance: `2 pi s / h`.
+    /// Speed that reaches a limit within a sub-step, per turn of distance from the limit: `2 pi s / h`.
     pub(super) open: Fx,
     /// Largest impulse; 0 if impulses turn neither body.
     pub(super) max: Speed,

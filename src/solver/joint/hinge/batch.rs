@@ -54,7 +54,7 @@ pub(super) struct Shape<const N: usize> {
     /// Changes of lever ratios per metre of the gap ([`super::refresh::gap_factors`]).
     pub(super) gap_factors: [Ints<N>; 2],
     pub(super) fractions: [Ints<N>; 2],
-    /// Vector from the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
+    /// Vector from A's centre of mass to B's centre of mass at the start of the tick, with 52 fraction bits.
     pub(super) between: [[i64; N]; 2],
 }
 

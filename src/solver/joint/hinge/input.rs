@@ -58,7 +58,7 @@ impl HingeBody {
         }
     }
 
-    /// A fixed body about a far anchor.
+    /// A fixed body with its far anchor as the centre.
     pub(in super::super) fn far_anchor(index: u32, pose: Pose, frame: &JointFrame) -> Self {
         HingeBody {
             turning: Turning { index, angle: pose.angle, turns: Fx::ZERO, ahead: Fx::ZERO },
@@ -76,7 +76,8 @@ impl HingeBody {
     }
 }
 
-/// The shares of two bodies in the mobility at the anchor of a hinge. The mobility of a body is `a (2 + e^2)`.
+/// The shares of two bodies in the mobility at the anchor of a hinge. The mobility of a body is `a (2 + e^2)`, with the
+/// mass fraction `a` and the lever ratio `e`.
 pub(in super::super) fn shares(joint: &Joint, [a, b]: [&HingeBody; 2]) -> [Unit; 2] {
     let fractions = MassFractions::of_masses(a.mass, b.mass);
     let mobility = |frame: &JointFrame, body: &HingeBody, fraction: Unit| {
@@ -185,7 +186,7 @@ impl Input {
 }
 
 /// Clamped vector from the centre of mass to an anchor. Both points are within 128 m of the body's origin on each axis,
-/// so that the clamp does not act, but the sums that compute the gap rely on this range.
+/// so the clamp never acts. It guarantees the range on which the sums that compute the gap rely.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()

@@ -5,7 +5,7 @@ use super::super::super::pair::{BodyPairW, HALF, UNIT, beyond, clamp};
 use super::batch::Batch;
 use crate::simd::{Ints, Lanes, VelocityW};
 
-/// 362 m/s. Two such impulses along different axes change a velocity by less than 512 m/s.
+/// 362 m/s in units of a speed. Two impulses of this size along different axes change a velocity by less than 512 m/s.
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
@@ -61,7 +61,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses above 512 m/s, as when a motor reverses or a held body comes free.
+    /// Applies impulses above 512 m/s, as when a motor reverses or a held body is released.
     #[cold]
     fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
         for _ in 0..3 {

@@ -1,8 +1,8 @@
 //! Hinges: revolute joints and welds with rigid anchors, solved in batches.
 //!
-//! `refresh` computes lever ratios, gains and gaps at the current pose. `warm_start` and `solve` change velocities by
-//! the point block of `point_block.rs`. `angle` does the same for the rows on the angle. `prepare` fills batches with
-//! hinges of one colour, and returns their impulses to the state.
+//! `refresh` computes lever ratios, gains and gaps at the current pose. `warm_start` and `solve` apply the equations of
+//! `point_block.rs`, and `angle` applies the equations of the rows on the angle. `prepare` fills batches with hinges of
+//! one colour, and returns their impulses to the state.
 
 mod angle;
 mod angle_input;

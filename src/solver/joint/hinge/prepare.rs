@@ -174,7 +174,7 @@ impl Coloured<Hinges> {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds the bodies of the hinges, all of which must be anchored.
+    /// Adds the bodies of the hinges. All hinges must be anchored.
     fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
             all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));

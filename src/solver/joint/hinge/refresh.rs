@@ -39,7 +39,7 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
-    /// The softness of the batch itself if it has one, otherwise that of ordinary or anchored hinges.
+    /// The softness of the batch itself if it has one, otherwise the softness of ordinary or of anchored hinges.
     #[inline(always)]
     pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
         match batch.is_tuned {

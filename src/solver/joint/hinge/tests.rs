@@ -134,7 +134,7 @@ impl Setting {
             softness: Softness::RIGID,
             is_tuned: false,
         });
-        // Both levers reach into the gap by `k` times the factor, which is rounded.
+        // Both levers are extended into the gap by `k` times the rounded factor.
         for ((end, gyration), factor) in ends.iter_mut().zip(gyrations).zip(gap_factors) {
             let share = crate::math::fx_mul(Fx::from_bits(i64::from(factor) << (32 - FACTOR)), gyration);
             let reach = Vec2::new(crate::math::fx_mul(gap.x, share), crate::math::fx_mul(gap.y, share));

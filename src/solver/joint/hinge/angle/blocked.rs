@@ -43,7 +43,7 @@ impl AngleRows<1> {
         self.limits[side].open.0[0] < 0
     }
 
-    /// `w` of a limit, from an impulse of 0 and without bounds.
+    /// `w` of a limit, for an impulse of 0 and without bounds.
     pub(in super::super) fn wanted_of_limit<L: Lanes<1>>(
         &self,
         side: usize,
