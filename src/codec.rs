@@ -89,8 +89,8 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. For a string that lacks at
-/// most this many bytes, the decoder reports an unexpected end, and otherwise an exceeded limit.
+/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. If a string lacks at most this
+/// many bytes, the decoder reports an unexpected end. If it lacks more, the decoder reports an exceeded limit.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
@@ -106,7 +106,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
     // bincode allocates the announced length of a string, up to a constant limit, before it checks whether the input is
-    // that long. Claiming the unused part of the limit in advance lowers the limit to the number of bytes plus the
+    // that long. Claiming the unused part of the limit in advance reduces the limit to the length of the input plus the
     // slack.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());

@@ -1,18 +1,17 @@
 //! Areas: wind, water and other effects of a sensor on the bodies inside it.
 //!
-//! An area fills its shape with a medium. `A` is the area in m² of the parts of a body's solid shapes that are inside,
-//! `c` their centre, and `s` the ratio of `A` to the area of all solid shapes of the body. For a body of lines, `A` is
-//! 0 and `s` is the ratio of the lengths. `M` is the body's mass.
-//!
+//! An area fills its shape with a medium. `A` is the size in m² of the part of a body's solid shapes that lies inside
+//! this shape, `c` the centre of that part, and `s` the ratio of `A` to the size of all solid shapes of the body. For a
+//! body of lines, `A` is 0 and `s` is the ratio of the lengths. `M` is the body's mass.
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `) x (` is the cross product, and any other `x` the body's centre of mass. `k` is the radius of gyration, and `v`
-//! and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of each area that
-//! acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the angular velocity
-//! of the area's body. The effects of several areas add up.
+//! `) x (` is the cross product, and every other `x` is the body's centre of mass. `k` is the radius of gyration, and
+//! `v` and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of each area
+//! that acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the angular
+//! velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,23 +21,23 @@ use super::shape::DENSITY_MAX;
 use crate::fx;
 use crate::math::{Fx, Vec2};
 
-/// In m/s².
+/// Largest acceleration in m/s².
 const ACCELERATION_MAX: Fx = fx!(10000);
-/// In N/m².
+/// Largest force in N/m².
 const FORCE_MAX: Fx = fx!(1048576);
-/// In m/s.
+/// Largest component of the flow in m/s.
 const FLOW_MAX: Fx = fx!(400);
-/// Per second.
+/// Largest drag per second.
 const DRAG_MAX: Fx = fx!(1000);
-/// Range in metres.
+/// Range of an attraction's radius in metres.
 const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 
 /// Effect of a sensor on the bodies inside it, such as wind, water or a field of gravity.
 ///
-/// The area acts on dynamic bodies with mass, through their solid shapes that the sensor detects, in proportion to the
-/// part of each shape that is inside. Segments and links count only if the body has no shape with an area. Rounded
-/// outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of the radius for circles, and 1.7 % for
-/// other rounded outlines. The area's body feels no reaction.
+/// The area acts on dynamic bodies with mass. It acts through the solid shapes that the sensor detects, in proportion
+/// to the part of each shape that is inside. Segments and links count only if the body has no other solid shapes.
+/// Rounded outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of the radius for circles, and
+/// 1.7 % for other rounded outlines. The area's body feels no reaction.
 ///
 /// ```
 /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -95,7 +94,7 @@ pub struct Area {
 /// let moon = ShapeDef::new(Geometry::circle(fx!(0.5))?);
 /// let moon = world.spawn(&BodyDef::dynamic().position((fx!(20), fx!(0))), &[moon])?;
 /// world.step();
-/// // A quarter of 5 m/s² at twice the radius, for a sixtieth of a second.
+/// // The pull at twice the radius is 5/4 m/s², and a tick lasts 1/60 s.
 /// let speed = world.body(moon).expect("still there").velocity().x * 60;
 /// assert!((speed + fx!(1.25)).abs() < fx!(0.01));
 /// # Ok::<(), lockstep2d::body::WorldError>(())

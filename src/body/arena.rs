@@ -33,7 +33,7 @@ macro_rules! define_handle {
         }
 
         impl $name {
-            /// Slot of the value. Slots are small and are reused, so they can index a side table.
+            /// Slot of the value. Slot numbers are small and are reused, so they can index a side table.
             #[must_use]
             pub const fn index(self) -> u32 {
                 self.index
@@ -114,7 +114,7 @@ define_handle! {
     /// let lower = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
     /// let upper = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1.5))), &[square])?;
     /// (0..120).for_each(|_| world.step());
-    /// // A stack sleeps as one island, and wakes as one.
+    /// // The bodies of a stack sleep as one island, and wake together.
     /// let island = |body| -> Option<IslandId> { world.body(body)?.island() };
     /// assert!(island(lower).is_some() && island(lower) == island(upper));
     /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -152,7 +152,7 @@ struct Slot<T> {
 pub(crate) struct Arena<T, H> {
     #[serde(deserialize_with = "slots_within_limit")]
     slots: Vec<Slot<T>>,
-    /// Vacant slots that are not retired. The last element was freed last.
+    /// Vacant slots that are not retired. The most recently freed slot is last.
     free: Vec<u32>,
     /// Vacant slots whose generation counter is exhausted.
     retired: u32,
@@ -169,8 +169,8 @@ pub(crate) struct ArenaRange<'a, T> {
 }
 
 impl<T> ArenaRange<'_, T> {
-    /// Value in a slot of the range, for changes as in [`Arena::at_mut`]. Panics if the slot is vacant or in another
-    /// range.
+    /// Value in a slot of the range. The caller may change only the fields that [`Arena::at_mut`] allows. Panics if the
+    /// slot is vacant or in another range.
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[(slot - self.first) as usize].value.as_mut().expect("an occupied slot")
@@ -261,13 +261,14 @@ impl<T, H: Handle> Arena<T, H> {
         if slot.generation == handle.generation() { slot.value.as_ref() } else { None }
     }
 
-    /// Value in an occupied slot, for any change. Invalidates the cached page copy. Panics if the slot is vacant.
+    /// Value in an occupied slot. The caller may change any field, because the cached page copy is invalidated. Panics
+    /// if the slot is vacant.
     pub(crate) fn redefine(&mut self, slot: u32) -> &mut T {
         self.kept.changed(slot);
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Value of a handle, for any change. Invalidates the cached page copy.
+    /// Value of a handle. The caller may change any field, because the cached page copy is invalidated.
     pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
         self.get(handle)?;
         Some(self.redefine(handle.slot()))
@@ -279,15 +280,15 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_ref().expect("an occupied slot")
     }
 
-    /// Value in an occupied slot, for changes of fields that every step changes. Keeps the cached page copy. Panics if
-    /// the slot is vacant.
+    /// Value in an occupied slot. The caller may change only fields that every step changes: cached page copies leave
+    /// these fields out and stay valid. Panics if the slot is vacant.
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the slots into consecutive ranges, each of which ends before the next slot in `ends`. For changes as in
-    /// [`Arena::at_mut`].
+    /// Divides the slots into consecutive ranges, each of which ends before the next slot in `ends`. The caller may
+    /// change only the fields that [`Arena::at_mut`] allows.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -321,7 +322,7 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// All values with their handles, for changes as in [`Arena::at_mut`].
+    /// All values with their handles. The caller may change only the fields that [`Arena::at_mut`] allows.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
         self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
             let generation = slot.generation;
@@ -329,8 +330,8 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether each vacant slot is either in the free list, exactly once, or retired, and `retired` counts the retired
-    /// slots.
+    /// Whether every vacant slot is either retired or exactly once in the free list, and `retired` is the number of
+    /// retired slots.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {

@@ -39,7 +39,7 @@ pub(crate) struct Pose {
 /// let body: &Body = world.body(id).expect("it was just created");
 /// assert!(body.position().y < fx!(3) && body.velocity().y < fx!(0));
 /// assert_eq!(body.mass(), fx!(1));
-/// // Bodies are changed by methods of the world, which check what they are given.
+/// // Bodies are changed through methods of the world, which validate their arguments.
 /// world.set_velocity(id, Vec2::new(fx!(2), fx!(0)), fx!(0))?;
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
@@ -55,9 +55,9 @@ pub struct Body {
     pub(crate) velocity: Vec2<Speed>,
     /// `u = k w`, the radius of gyration times the angular velocity.
     pub(crate) spin: Speed,
-    /// In N. Cleared at the end of the next tick.
+    /// Applied force in N. Cleared at the end of the next tick.
     pub(crate) force: Vec2<Fx>,
-    /// About the centre of mass in N m. Cleared at the end of the next tick.
+    /// Applied torque about the centre of mass in N m. Cleared at the end of the next tick.
     pub(crate) torque: Fx,
     /// Boxed, like `target`, so that the fields that every step reads lie close together.
     pub(crate) mass_source: Box<MassSource>,
@@ -274,7 +274,7 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass. Keeps pose, motion and the lines of action of forces, except for clamps and locked axes.
+    /// Changes the mass. Keeps pose, motion and the lines of action of forces. Clamps the velocity and obeys locks.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -340,7 +340,7 @@ impl Body {
     }
 
     /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`. Shortens a velocity above
-    /// [`SPEED_MAX`] without turning it.
+    /// [`SPEED_MAX`] and keeps its direction.
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
         let dv = Vec2::new(divide(impulse.x, self.mass.mass), divide(impulse.y, self.mass.mass));
         self.velocity = (self.velocity() + dv).shortened(SPEED_MAX.into()).narrow();
@@ -358,7 +358,7 @@ impl Body {
     fn turn_by(&mut self, impulse: i128) {
         if self.turns() && self.has_mass() {
             let over = i128::from(self.mass.mass.to_bits()) * i128::from(self.mass.gyration.to_bits());
-            // Without room for 21 more bits in the impulse, drops bits of the divisor: they suffice, or `du` saturates.
+            // Bits that the impulse has no room for are dropped from the divisor. Enough remain, unless `du` saturates.
             let room = impulse.unsigned_abs().leading_zeros().saturating_sub(1).min(21);
             let du = saturate_wide(div_round(impulse << room, over >> (21 - room)));
             self.spin = self.spin.saturating_add(Speed::from_bits(saturate(du)));

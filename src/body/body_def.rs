@@ -17,7 +17,7 @@ use crate::math::{Angle, Fx, Vec2};
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let lift = world.spawn(&BodyDef::kinematic().velocity((fx!(0), fx!(1))), &[square])?;
 /// world.step();
-/// // Its rope breaks.
+/// // The rope of the lift breaks.
 /// world.set_kind(lift, BodyKind::Dynamic)?;
 /// (0..60).for_each(|_| world.step());
 /// assert!(world.body(lift).is_some_and(|lift| lift.velocity().y < fx!(0)));

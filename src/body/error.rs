@@ -98,7 +98,7 @@ impl fmt::Display for GeometryError {
 
 impl core::error::Error for GeometryError {}
 
-/// Text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends. A minimum of [`Fx::DELTA`] means any value above 0.
+/// Formats a range. [`Fx::MIN`] and [`Fx::MAX`] mean no limit. A minimum of [`Fx::DELTA`] means any value above 0.
 struct Range<'a> {
     min: &'a Fx,
     max: &'a Fx,
@@ -130,7 +130,7 @@ impl fmt::Display for Range<'_> {
 /// let bomb = world.spawn(&BodyDef::dynamic(), &[])?;
 /// world.despawn(bomb)?;
 /// let before = world.state_hash();
-/// // An input of a player that comes too late.
+/// // The input of a player arrives after the body has been removed.
 /// assert_eq!(world.apply_torque(bomb, fx!(1)), Err(WorldError::StaleBody(bomb)));
 /// assert_eq!(world.state_hash(), before, "a refused change leaves no trace");
 /// # Ok::<(), WorldError>(())

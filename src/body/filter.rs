@@ -32,7 +32,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// Whether two shapes may collide. Symmetric.
+    /// Whether two shapes may collide. The result is the same if the shapes are exchanged.
     #[must_use]
     pub const fn accepts(&self, other: &Filter) -> bool {
         if self.group == other.group && self.group != 0 {
@@ -45,7 +45,7 @@ impl Filter {
         let Filter { category, mask, group } = *self;
         let class = match group {
             ..0 => i64::from(group),
-            // If two shapes with such filters have the same category, their masks exclude each other.
+            // If two shapes with such filters have the same category, each mask excludes the other shape.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };
@@ -58,7 +58,7 @@ impl Filter {
 pub(crate) struct CollisionClass(i16);
 
 impl CollisionClass {
-    /// Class of a shape that may collide with shapes of any class, and of a set of shapes of several classes.
+    /// Class of a shape that may collide with shapes of every class, and of a set with shapes of several classes.
     pub(crate) const NONE: Self = CollisionClass(0);
 
     /// Class of the union of two sets of shapes.

@@ -25,9 +25,9 @@ use super::shape::ShapeDef;
 use crate::fx;
 use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 
-/// Range in kg.
+/// Range of masses in kg.
 const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
-/// Range in metres.
+/// Range of radii of gyration in metres.
 const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 
 /// Source of a dynamic body's mass.
@@ -82,7 +82,7 @@ pub struct MassProperties {
     /// Mass in kg, 0 for a body without mass.
     pub(crate) mass: Fx,
     pub(crate) centre: Vec2<Fx>,
-    /// In metres. Positive but arbitrary if the mass is 0.
+    /// Radius of gyration in metres. Positive but arbitrary if the mass is 0.
     pub(crate) gyration: Fx,
     /// `1 / gyration`, or 0 if the rotation is locked.
     pub(crate) inverse_gyration: Reciprocal,
@@ -221,9 +221,9 @@ fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
 
 struct Part {
     mass: Fx,
-    /// In the body's frame.
+    /// Centre of mass in the body's frame.
     centre: Vec2<Fx>,
-    /// About the shape's centre of mass, in m², with 44 fraction bits.
+    /// Square of the radius of gyration about `centre`, in m², with 44 fraction bits.
     gyration_squared: i128,
 }
 

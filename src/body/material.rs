@@ -6,7 +6,7 @@ use super::error::WorldError;
 use crate::fx;
 use crate::math::{Fx, fx_mul};
 
-/// Rule that combines a property of two shapes. If the two shapes have different rules, the rule further down in this
+/// Rule that combines a property of two shapes. If two shapes have different rules, the rule that comes later in this
 /// list applies.
 ///
 /// ```

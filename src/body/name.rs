@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::arena::BodyId;
 use super::error::WorldError;
 
-/// In bytes.
+/// Largest length of a name in bytes.
 const LENGTH_MAX: usize = 16;
 
 /// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports show it after the handle, as in `13v0 ball`. The

@@ -16,7 +16,7 @@ pub const POLYGON_VERTICES_MAX: usize = 8;
 /// 3 * 156 m + 15 m from the centre of the other. This distance fits [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
-/// In metres. A shorter edge has no reliable direction in units of [`Length`].
+/// Minimum length of an edge in metres. A shorter edge has no reliable direction in units of [`Length`].
 const EDGE_MIN: Fx = crate::fx!(0.0005);
 
 /// A convex polygon, counter-clockwise, relative to its shape's centre. A radius moves its edges outwards and rounds
@@ -67,8 +67,8 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners with an angle within about 0.0001 rad of 0 or of 180 degrees: collision detection may classify a
-    /// point beside one of the two edges as beside the other edge.
+    /// Avoid corners with an angle within about 0.0001 rad of 0 or of half a turn: collision detection may classify
+    /// a point beside one of the two edges as beside the other edge.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not

@@ -13,7 +13,7 @@ pub(super) fn serialize<S: Serializer>(shapes: &ShapeList, to: S) -> Result<S::O
     shapes.as_slice().serialize(to)
 }
 
-/// Deserializes through a `Vec`, which does not trust the length that a file announces when it allocates.
+/// Deserializes through a `Vec`, because `Vec` bounds the memory that it allocates for an untrusted length.
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<ShapeList, D::Error> {
     Vec::deserialize(from).map(|shapes| ShapeList::from_slice(&shapes))
 }

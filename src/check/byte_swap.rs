@@ -16,8 +16,8 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Minimum interval in ticks between stored saves. Before the first interval has passed, saves at powers of two are
-/// stored too.
+/// Minimum interval in ticks between stored saves. Before the end of the first interval, the saves after 1, 2, 4, 8 and
+/// so on ticks are stored too.
 const INTERVAL: u64 = 16;
 const FUTURE: usize = 48;
 const DONORS_MAX: usize = 6;

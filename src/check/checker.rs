@@ -155,7 +155,7 @@ impl<'s, G: Game> Checker<'s, G> {
         Ok(Checked { ticks: self.tick, hash: self.hash, variants, simulated: self.simulated() })
     }
 
-    /// The default input of each player, where no tick has been played.
+    /// The default input of every player, for places where inputs are required but no tick is played.
     fn nothing(&self) -> Vec<G::Input> {
         vec![G::Input::default(); self.straight.players() as usize]
     }

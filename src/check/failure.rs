@@ -11,7 +11,7 @@ use crate::replay::{RecordError, Verdict};
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
 /// use lockstep2d::check::{CheckOptions, Failure, Fault, Variant, check, check_replay};
-/// /// A game in which every press in a row scores one point more than the press before.
+/// /// A game in which each press scores one point more than the press in the tick before.
 /// #[derive(Default)]
 /// struct Combo { score: u32, row: u32 }
 /// impl Game for Combo {
@@ -50,7 +50,7 @@ pub struct Failure {
     pub minimised: Finding,
     /// Replay file with the fewest ticks and inputs that the search found within the budget.
     /// [`check_replay`](super::check_replay) reproduces the failure, unless the failure is random or a replay cannot
-    /// represent the setup, inputs or claims. The checkpoints of the replay of a random failure may be wrong as well.
+    /// represent the setup, inputs or claims. If the failure is random, the checkpoints of the replay may be wrong too.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,
@@ -78,7 +78,7 @@ impl fmt::Debug for Failure {
 /// ```
 /// use lockstep2d::check::{CheckError, CheckOptions, check_replay};
 /// use lockstep2d::{lockstep::Sandbox, replay::Verdict};
-/// // A tool tells a bad file from a bad game.
+/// // A tool distinguishes a bad file from a game with a fault.
 /// match check_replay::<Sandbox>(b"not a replay", &CheckOptions::default()) {
 ///     Err(CheckError::Replay(Verdict::Malformed { .. })) => {}
 ///     Err(CheckError::Failed(failure)) => panic!("the game has a fault: {failure}"),

@@ -14,7 +14,7 @@ use crate::world::Phase;
 ///
 /// ```
 /// use lockstep2d::check::Fault;
-/// // The most frequent cause of a fault.
+/// // The most frequent causes of a fault.
 /// let cause = |fault: &Fault| match fault {
 ///     Fault::Hash => "a field that `save` or `load` leaves out, a clock, a hash map",
 ///     Fault::Unhashed => "a field that `state_hash` leaves out",
@@ -59,7 +59,7 @@ pub enum Fault {
     Unrecordable(RecordError),
 }
 
-/// The predicted inputs with which a game was played before it was rolled back.
+/// The predicted inputs that a game was played with before it was rolled back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
     /// The actual inputs.
@@ -117,7 +117,8 @@ impl Finding {
         Finding { variant, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
     }
 
-    /// A fault that refuses the tick after `tick` ticks. The inputs of the refused tick are needed to reproduce it.
+    /// A fault in the tick that follows `tick` ticks, such as an exceeded limit. The inputs of that tick are needed to
+    /// reproduce the fault.
     pub(super) fn in_next(variant: Variant, fault: Fault, tick: u64) -> Box<Self> {
         Box::new(Finding { played: tick + 1, ..Finding::new(variant, fault, tick) })
     }

@@ -1,4 +1,4 @@
-//! The inputs of every tick. Logs that are derived from each other share these inputs.
+//! Logs: the inputs of every tick. Logs that are derived from one another share the inputs in memory.
 
 use alloc::rc::Rc;
 use alloc::vec;

@@ -61,7 +61,7 @@ fn record<G: Game>(
         Ok(recording) => recording,
         Err(error) => return found(Fault::Unrecordable(error), 0),
     };
-    // The recorded game has the setup as a verifier decodes it.
+    // The recorded game starts from the setup as a verifier decodes it, which may give another state.
     compare(&another::<G>(setup, Variant::Recorded, 0)?, recording.game(), 0)?;
     for (inputs, tick) in log.ticks.iter().zip(0..options.to) {
         if let Err(error) = recording.step(inputs) {
@@ -102,8 +102,8 @@ pub(super) fn minimise<G: Game>(
         .into_iter()
         .find_map(|variant| search.begin(log, variant, &finding))
         .unwrap_or_else(|| (finding.clone(), Attempt { ticks: log.ticks.clone(), finding, failed: 0 }));
-    // The first runs only measure how often the log fails. They take as long as a check, and long logs would leave
-    // nothing of the budget.
+    // The runs so far only measured how often the log fails. They do not count, because for a long log they would use
+    // up the whole budget.
     search.spent = 0;
     let best = if search.need > 0 { search.shrink(log, best) } else { best };
     let log = log.of(best.ticks);
@@ -145,7 +145,7 @@ impl<G: Game> Search<'_, G> {
         }
         self.need = 1;
         let of_cut = self.attempt(first(log, finding.played).ticks, log);
-        // If the failure is random, the whole log may fail more often than its first ticks.
+        // If the failure is random, the whole log may fail more often than a log that was cut after the failing tick.
         self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
         let of_all = match self.need <= self.options.repeats {
             true => self.attempt(log.ticks.clone(), log),
@@ -158,8 +158,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays a candidate log repeatedly, and stops once the candidate cannot fail often enough any more. A candidate
-    /// that fails is cut after the last failing tick.
+    /// Plays a candidate log repeatedly, and stops as soon as it can no longer reach the needed number of failures. A
+    /// candidate that fails is cut after its last failing tick.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());

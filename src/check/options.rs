@@ -25,9 +25,10 @@ pub enum Variant {
     /// The inputs are played again from [`CheckOptions::from`] on, in the same process. This detects random iteration
     /// orders, global state, addresses and clocks.
     Again,
-    /// Hash, work, claims and save are polled twice after every tick. Polling must not change the state.
+    /// `state_hash`, `work`, `claims` and `save` are called twice after every tick. The calls must not change the
+    /// state.
     HashPolled,
-    /// The hash is polled only after the last tick. This hash must equal the hash of the reference run.
+    /// `state_hash` is called only after the last tick. Its result must equal the hash of the reference run.
     HashUnpolled,
     /// Every [`CheckOptions::every`] ticks, the state is encoded, decoded and loaded into a new game, which continues.
     Reloaded,
@@ -125,7 +126,7 @@ pub enum Depths {
     Each,
 }
 
-/// Whether the phases of the physics step are compared.
+/// Whether a check compares the phases of the physics step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phases {
     /// Compares only the states between ticks.
@@ -165,8 +166,8 @@ pub struct CheckOptions {
     /// Maximum number of runs of each shortened log, at least 1, to measure how often it fails. A log that fails
     /// randomly is shortened only while it fails as often as before.
     pub repeats: u32,
-    /// Number of simulated ticks after which a failing log is not minimised further, without the runs that measure how
-    /// often the log fails. With 0, the log is only cut after the tick at which the fault was detected.
+    /// Number of simulated ticks after which a failing log is not minimised further, not counting the runs that measure
+    /// how often the log fails. With 0, the log is only cut after the tick at which the fault was detected.
     pub budget: u64,
     /// Limits of the reference run, and of the replays that are read and verified.
     pub limits: Limits,

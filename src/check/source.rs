@@ -94,7 +94,7 @@ impl Source<'_> {
             0..=3 => self.byte().into(),
             // A small negative number, if the type is signed.
             4 => !u128::from(self.byte()),
-            // Around the limits of a signed type.
+            // A number near the limits of a signed type.
             5 => (1u128 << (count - 1)).wrapping_add(u128::from(self.byte())).wrapping_sub(128),
             _ => (0..count / 8).fold(0, |bits, _| bits << 8 | u128::from(self.byte())),
         }

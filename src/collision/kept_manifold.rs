@@ -80,8 +80,8 @@ impl KeptManifold {
         }
     }
 
-    /// Replaces a coordinate of a lever arm by the coordinate of an earlier manifold with the same points, if the two
-    /// differ by at most the tolerance in metres.
+    /// Replaces each coordinate of a lever arm by that of an earlier manifold with the same points, if the two differ
+    /// by at most the tolerance in metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
             for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
@@ -158,7 +158,7 @@ impl KeptManifold {
         let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
         let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
         let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
-        // `d` has 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
+        // `d` has 52 fraction bits. `shift` is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
         let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
         let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
         let mut separations = [Step::ZERO; 2];
@@ -187,7 +187,7 @@ impl KeptSide {
             return Some(0);
         }
         let turn = (self.pose.angle - angle).to_bits().cast_signed();
-        // TAU has 35 bits, and the turn at most 27.
+        // `TAU` has 35 bits and the turn at most 27, so that the product fits 64 bits.
         let radians = || round_shift(i64::from(turn) * TAU.to_bits(), 34);
         (-TURN_MAX..=TURN_MAX).contains(&turn).then(radians)
     }

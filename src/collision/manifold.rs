@@ -2,9 +2,9 @@
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, to carry over its accumulated impulse. It consists of the vertices of A and
-/// B that meet at the point. Identifiers that also encoded the clipping would change while a pile settles. Each change
-/// would lose a warm start, and the pile would sink (`docs/DESIGN.md`).
+/// Identifies a contact point across ticks, to carry over its accumulated impulse: the vertices of A and B that meet at
+/// the point. Identifiers that also encoded the clipping would change while a pile settles. Each change would lose a
+/// warm start, and the pile would sink (`docs/DESIGN.md`).
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};

@@ -22,8 +22,8 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// The longest fitting bar of 1, 2 or 5 times a power of ten millimetres, at most 2 000 000 km, or `None` if not even
-    /// 1 mm fits.
+    /// The longest bar that fits, with a length of 1, 2 or 5 times a power of ten millimetres, at most 2 000 000 km.
+    /// `None` if not even 1 mm fits.
     #[must_use]
     pub fn up_to(fits: impl Fn(Fx) -> bool) -> Option<Self> {
         let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));

@@ -8,8 +8,8 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body found
-/// so far. The next body belongs to the scene if it is within four times the reach.
+/// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body that
+/// has been added so far. The next body belongs to the scene if it is within four times the reach.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Upper limit of the search distance for ground, as a multiple of the size of the scene.
 const GROUND_SIZES: i64 = 12;
@@ -37,7 +37,7 @@ pub fn fit(world: &World) -> Aabb {
             .unwrap_or_default(),
     };
     let side = longest_side(window);
-    // There is nothing to show, or only a single point.
+    // The world is empty or a single point.
     if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
 }
 

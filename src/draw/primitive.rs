@@ -182,8 +182,8 @@ pub enum Style {
     BroadPhase,
     /// The fat box of a shape in the broad phase.
     FatBox,
-    /// A line from a joint's anchor to the centre of mass of the body, or along the part of the distance between the
-    /// anchors that the joint allows: a rod, a spring, the travel of a slider, a rope.
+    /// A line from a joint's anchor to the centre of mass of the body, or the part of the distance between the anchors
+    /// that the joint allows: a rod, a spring, the travel of a slider, a rope.
     JointArm,
     /// The displacement of the centre of mass in a tenth of a second at constant velocity.
     Velocity,
@@ -219,7 +219,7 @@ pub enum Style {
 ///
 /// ```
 /// use lockstep2d::draw::Hue;
-/// // A colour for each team, as long as there are enough.
+/// // A colour for each team, as long as there are enough colours.
 /// let palette = [0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728];
 /// let colour = |team: usize| palette[usize::from(Hue::of(team).index()) % palette.len()];
 /// assert_ne!(colour(0), colour(1));

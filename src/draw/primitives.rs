@@ -12,7 +12,7 @@ use crate::world::{ContactView, SolverColour, World};
 /// shorter ones are hard to tell from points.
 const VELOCITY_TIME: Fx = fx!(0.1);
 
-/// Drawn length in metres of a force that accelerates its body by [`FORCE_UNIT`]. Typical bodies are larger.
+/// Drawn length in metres of a force that accelerates its body by [`FORCE_UNIT`]. It is shorter than typical bodies.
 const FORCE_LENGTH: Fx = fx!(0.2);
 /// Unit of drawn accelerations in m/s².
 const FORCE_UNIT: i64 = 10;

@@ -26,7 +26,7 @@ use crate::math::Angle;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectError {
-    /// Message of the value's `Serialize`, or that the value is nested too deep.
+    /// Message of the value's `Serialize`, or a message that the value is nested too deep.
     pub why: String,
 }
 
@@ -97,7 +97,7 @@ impl Collector {
         result
     }
 
-    /// Converts a map key to text: the values of its fields, separated by commas. The depth of the map counts.
+    /// Converts a map key to text: the values of its fields, separated by commas. The key counts as nested in the map.
     pub(super) fn key<T: Serialize + ?Sized>(&self, key: &T) -> Result<String, InspectError> {
         let mut collector = Collector { depth: self.depth, ..Collector::default() };
         collector.nested(key)?;
@@ -108,8 +108,8 @@ impl Collector {
         Ok(parts.collect::<Vec<_>>().join(", "))
     }
 
-    /// Replaces the field of the bits of a fixed-point number by the number. A number of more than 127 bits, and the
-    /// fields of another struct whose name begins with `FixedI` or `FixedU`, remain.
+    /// Replaces the field with the bits of a fixed-point number by a field with the number. Leaves numbers of more than
+    /// 127 bits, and other structs whose name begins with `FixedI` or `FixedU`, as they are.
     pub(super) fn join_fixed(&mut self, before: usize, fraction_bits: Option<u32>) {
         if let [Field { value, path, .. }] = &mut self.fields[before..]
             && let Some(bits) = value.bits()

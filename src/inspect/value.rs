@@ -15,7 +15,7 @@ use crate::math::Angle;
 /// let ship = Ship { fuel: fx!(2.5), heading: Angle::QUARTER, docked: false };
 /// let values: Vec<Value> = fields(&ship)?.into_iter().map(|field| field.value).collect();
 /// assert_eq!(values[1..], [Value::Angle(Angle::QUARTER), Value::Bool(false)]);
-/// // A number keeps its bits beside the text for people.
+/// // A fixed-point number gives its exact bits, and a decimal text to display.
 /// assert_eq!((values[0].bits(), values[0].decimal()), (Some(5 << 31), Some("2.5".into())));
 /// # Ok::<(), lockstep2d::inspect::InspectError>(())
 /// ```

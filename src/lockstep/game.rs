@@ -32,7 +32,7 @@ pub struct RulesId {
 /// # use lockstep2d::{body::BodyDef, world::Command};
 /// let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
 /// let setup = SandboxSetup { commands: vec![spawn; 1000], ..SandboxSetup::default() };
-/// // A server that starts a stranger's level sets a limit.
+/// // A server that starts the level of an unknown user sets a limit.
 /// assert!(matches!(Sandbox::new_within(&setup, 10), Err(StartError::TooMuchWork { max: 10, .. })));
 /// assert!(Sandbox::new_within(&setup, 1_000_000_000).is_ok());
 /// ```
@@ -66,7 +66,7 @@ impl core::error::Error for StartError {}
 ///
 /// ```
 /// use lockstep2d::lockstep::SetupError;
-/// /// Checks the number of players in a setup, which may come from a stranger's file: two to four can play.
+/// /// Checks the number of players, two to four, in a setup from an untrusted file.
 /// fn checked(players: u32) -> Result<u32, SetupError> {
 ///     let is_valid = (2..=4).contains(&players);
 ///     is_valid.then_some(players).ok_or_else(|| SetupError { why: format!("{players} players") })
@@ -133,7 +133,7 @@ impl core::error::Error for SetupError {}
 ///     fn world_mut(&mut self) -> Option<&mut World> { Some(&mut self.world) }
 /// }
 ///
-/// // The trait provides recording, verification, tools, matches, and a check of determinism.
+/// // With this implementation, the game can be recorded, verified, played in matches, and checked for determinism.
 /// use lockstep2d::check::{CheckOptions, check, random_inputs};
 /// let inputs = random_inputs::<Lift>(1, 30, &mut Rng::new(1));
 /// check::<Lift>(&(), &inputs, &CheckOptions::default())?;

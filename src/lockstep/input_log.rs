@@ -51,7 +51,7 @@ impl core::error::Error for InputError {}
 /// # impl Clone for Stick { fn clone(&self) -> Self { Stick(self.0) } }
 /// impl From<i8> for Stick { fn from(sent: i8) -> Self { Stick(sent * 16) } }
 /// impl From<Stick> for i8 { fn from(stick: Stick) -> i8 { stick.0 / 16 } }
-/// // The player's own machine also simulates the decoded inputs.
+/// // The player's own machine simulates the decoded inputs too.
 /// let inputs = EncodedInputs::new(&[Stick(100)], 1)?;
 /// assert_eq!((inputs.bytes(), inputs.inputs()), (&[6][..], &[Stick(96)][..]));
 /// # Ok::<(), lockstep2d::lockstep::InputError>(())

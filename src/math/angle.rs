@@ -15,7 +15,7 @@ use super::vec2::Vec2;
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
 /// 2 pi.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);
-/// Radians in a degree. Products multiply its rounding error: prefer [`Angle::from_degrees`].
+/// Radians in a degree. A product with this constant multiplies its rounding error: prefer [`Angle::from_degrees`].
 pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 
 /// An angle, counter-clockwise, as a fraction of a turn. Sums and differences wrap.
@@ -127,7 +127,7 @@ impl Angle {
         Fx::from_bits(self.signed())
     }
 
-    /// Sine, within 0.8 units of 2^-30. It is odd, and exact at the quarter turns.
+    /// Sine, within 0.8 units of 2^-30. The function is odd, and exact at the quarter turns.
     #[inline]
     #[must_use]
     pub const fn sin(self) -> Unit {

@@ -28,16 +28,16 @@ pub type Rate = FixedI32<U18>;
 /// Friction limit of a tangent row per unit of the normal impulse: ±2048, resolution 9.5e-7.
 pub type FrictionRatio = FixedI32<U20>;
 
-/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` is at most 63. With a shift of 1, `x` is below
-/// `i64::MAX`, for which the addition overflows.
+/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` is at most 63. With a shift of 1, `x` must be
+/// below `i64::MAX`, for which the addition of the rounding constant would overflow.
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Drops all but one of the `shift` bits before the addition, so that only a shift of 1 can overflow.
+    // Drops all but one of the `shift` bits before the addition, so that it can overflow only with a shift of 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
-/// [`round_shift`] for 128-bit intermediates. `shift` is at most 127. With a shift of 1, `x` is below `i128::MAX`.
+/// [`round_shift`] for 128-bit intermediates. `shift` is at most 127. With a shift of 1, `x` must be below `i128::MAX`.
 #[inline]
 #[must_use]
 pub const fn round_shift_wide(x: i128, shift: u32) -> i128 {

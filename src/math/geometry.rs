@@ -111,7 +111,7 @@ fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>)
     if on_segment(a0, b0, b1) {
         return Some(a0);
     }
-    // The shared part, if there is one, begins at the end of `b` that is on `a` and nearer to `a0`.
+    // The shared part, if there is one, begins at the end of `b` that lies on `a` nearest to `a0`.
     [b0, b1]
         .into_iter()
         .filter(|&end| on_segment(end, a0, a1))

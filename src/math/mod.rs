@@ -1,6 +1,6 @@
 //! Fixed-point mathematics: number formats, vectors, angles, roots, planar geometry and random numbers.
 //!
-//! Everything is integer arithmetic with documented rounding, for use in deterministic game rules as well.
+//! All computations use integers with documented rounding, so that deterministic game rules can use them too.
 
 mod aabb;
 mod angle;

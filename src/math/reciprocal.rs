@@ -13,7 +13,7 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Length, Reciprocal}};
-/// // One division serves many products: shares of a prize among seven.
+/// // One division serves many products: a prize is shared among seven players.
 /// let seventh = Reciprocal::of_integer(7);
 /// let share: Length = seventh.times(Length::from_num(21));
 /// assert_eq!(share, Length::from_num(3));
@@ -21,9 +21,9 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reciprocal {
-    /// 0, or 2^30 to 2^31 - 1.
+    /// 0, or from 2^30 to 2^31 - 1.
     mantissa: i32,
-    /// 0 to 60.
+    /// From 0 to 60.
     shift: u32,
 }
 

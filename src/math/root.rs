@@ -90,7 +90,7 @@ impl Vec2<Fx> {
         if sum == 0 {
             return None;
         }
-        // The sum is normalised to 127 or 128 bits, so that its root and each component have at most 64.
+        // `sum` is normalised to 127 or 128 bits, so that its root and each component have at most 64 bits.
         let shift = sum.leading_zeros() & !1;
         let scale = inverse_root(high_half(sum << shift)) as u128;
         let x_part = high_half(((x.unsigned_abs() << (shift / 2)) as u128 * scale) << 32);
@@ -143,7 +143,7 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     if sum == 0 {
         return None;
     }
-    // The sum is normalised to 63 or 64 bits, so that its root and each component have at most 32.
+    // `sum` is normalised to 63 or 64 bits, so that its root and each component have at most 32 bits.
     let shift = sum.leading_zeros() & !1;
     let scale = inverse_root(sum << shift);
     let x_part = ((x.unsigned_abs() as u64) << (shift / 2)) * scale;
@@ -157,8 +157,8 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // The root of m = n 2^shift is m / sqrt(m). The errors of the inverse (0.51) and of rounding (one half) leave
-    // `root` at most one away from the nearest root.
+    // The root of m = n 2^shift is m / sqrt(m). The error of the inverse (0.51) and the rounding error (one half) leave
+    // `root` at most one away from the nearest integer to the root.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
@@ -243,7 +243,7 @@ const fn root_wide(n: u128) -> u128 {
     if n == 0 {
         return 0;
     }
-    // `m / sqrt(m)` gives 32 bits of the root `r`, `(n - r^2) / (2 sqrt(n))` extends them to 63, and the loops correct
+    // `m / sqrt(m)` gives 32 bits of the root `r`, and `(n - r^2) / (2 sqrt(n))` the next 31 bits. The loops correct
     // the last unit.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);

@@ -161,7 +161,8 @@ mod tests {
             let (a, b) = (rng.angle(), rng.angle());
             let both = Rot::from_angle(a).then(Rot::from_angle(b));
             let sum = Rot::from_angle(a + b);
-            // Each factor contributes at most 0.79 sqrt 2 units, the product half a unit, and the sum 0.79: below 4.
+            // In units of 2^-30, each factor contributes at most 0.79 sqrt 2, rounding of the product 0.5, and `sum`
+            // 0.79: below 4.
             let apart = (both.cos - sum.cos).abs().max((both.sin - sum.sin).abs());
             assert!(apart.to_bits() <= 3, "{a:?} {b:?} {apart}");
         }

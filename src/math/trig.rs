@@ -20,7 +20,7 @@ const QUARTER: u32 = 1 << 30;
 #[inline]
 pub(super) const fn sine(angle: u32) -> i32 {
     let angle = signed(angle);
-    // x and half a turn minus x have the same sine.
+    // The sine of `x` equals the sine of half a turn minus `x`.
     let folded = QUARTER - angle.unsigned_abs().abs_diff(QUARTER);
     let minus = angle >> 31; // all bits set for a negative angle
     (sine_of_quarter_turn(folded) ^ minus) - minus
@@ -61,7 +61,7 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     if long == 0 {
         return 0;
     }
-    // The top bit of `long` is moved to bit 62, so that `long + short` fits.
+    // Moves the top bit of `long` to bit 62, so that `long + short` fits.
     let spare = long.leading_zeros();
     let (short, long) =
         if spare == 0 { (short >> 1, long >> 1) } else { (short << (spare - 1), long << (spare - 1)) };

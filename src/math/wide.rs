@@ -182,7 +182,7 @@ mod tests {
         assert!(sum > top);
     }
 
-    /// A common factor of 2^64 makes the second call take the slow branch, except where `x numerator` is below 2^64.
+    /// A common factor of 2^64 forces the second call into the slow branch, except where `x numerator` is below 2^64.
     #[test]
     fn long_division_agrees_with_the_short_one() {
         let mut rng = Rng::new(1);

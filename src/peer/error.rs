@@ -29,7 +29,8 @@ pub enum PeerError {
     /// a method, such as `Game::tick_rate`, or the `bytes of the default input`.
     Config(ConfigError),
     /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes). Without that
-    /// option: an encoded input is not as long as the default input, or the default input is longer than 65 535 bytes.
+    /// option: the length of an encoded input differs from that of the default input, or the default input is longer
+    /// than 65 535 bytes.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,

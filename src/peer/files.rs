@@ -25,8 +25,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Returns a complete replay of the ticks that are final so far, with the bytes that have been taken. Recording goes
-    /// on. Empty if this peer has no replay.
+    /// Returns a complete replay of the ticks that are final so far, including the bytes that have been taken.
+    /// Recording continues. Empty if this peer has no replay.
     ///
     /// # Errors
     /// [`PeerError`] if the state after the last final tick is not kept, or the replay cannot be finished.

@@ -20,7 +20,8 @@ pub(super) enum InputSlot {
 }
 
 impl InputSlot {
-    /// The slot for inputs of up to `bytes` bytes. Without `bytes`: for inputs as long as the default input.
+    /// The slot for inputs of up to `bytes` bytes. If `bytes` is `None`, every input has to be as long as the default
+    /// input.
     pub(super) fn of<I: Serialize + Default>(bytes: Option<u16>) -> Result<Self, PeerError> {
         let default = codec::encode(&I::default()).len();
         match (bytes, u16::try_from(default)) {

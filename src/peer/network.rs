@@ -10,7 +10,7 @@ use crate::session::Address;
 
 /// Additional delay of a reordered packet.
 const REORDER_DELAY: Duration = Duration::from_millis(20);
-/// Maximum number of packets that wait for a receiver. Further packets are lost.
+/// Maximum number of packets that wait at a receiver. Further packets are lost.
 const QUEUE_MAX: usize = 8192;
 
 /// Conditions of a link in one direction. The default has no delay or loss.
@@ -95,10 +95,10 @@ struct State {
     rng: Rng,
     now: Duration,
     sent: u64,
-    /// Arrival of the last packet of a link, without [`REORDER_DELAY`]. Later packets of the link arrive no earlier, so
-    /// jitter keeps the order.
+    /// Arrival time of the last packet of a link, without [`REORDER_DELAY`]. Later packets of the link arrive no
+    /// earlier, so jitter keeps the order of packets.
     last: BTreeMap<(u32, u32), Duration>,
-    /// Packets in flight, by arrival and order of sending.
+    /// Packets in flight, by arrival time and order of sending.
     flying: BTreeMap<(Duration, u64), Datagram>,
     arrived: BTreeMap<u32, VecDeque<(u32, Vec<u8>)>>,
 }

@@ -21,12 +21,12 @@ use super::input_slot::{InputSlot, LENGTH_BYTES};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerOptions {
-    /// Largest number of ticks played with guessed inputs, 0 (lockstep) to 32. Default: 0 or, with rollback, 8.
+    /// Largest number of ticks played with guessed inputs, 0 (lockstep) to 32. Default: 0 for lockstep, 8 for rollback.
     pub guess: u16,
     /// Bounds of the input delay in ticks, 0 to 60. Within these bounds the delay follows the latency. Default: (0, 20)
-    /// or, with rollback, (1, 20).
+    /// for lockstep, (1, 20) for rollback.
     pub delay: (u16, u16),
-    /// Time after which the others continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
+    /// Time after which the other peers continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
     pub patience: Duration,
     /// Number of seats taken before the first tick: 0 to the number of players of the game. The value of the host
     /// counts. Default: 2.
@@ -91,7 +91,7 @@ impl PeerOptions {
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
         config.timing = Timing { patience, ..Timing::DEFAULT };
-        // Saves have the state hashes that checkpoints need, so the save interval divides the checkpoint interval.
+        // Checkpoints need the state hashes of saves, so the save interval divides the checkpoint interval.
         let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
@@ -129,7 +129,7 @@ fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError 
 ///
 /// ```
 /// use lockstep2d::{peer::PeerIdentity, session::Key};
-/// // The lobby knows the account of a player, whose process crashes and is started again.
+/// // A player's process crashes and is started again. The lobby knows the player's account.
 /// let account = Key(1234);
 /// let before = PeerIdentity::random().with_key(account);
 /// let after = PeerIdentity::random().with_key(account);

@@ -45,8 +45,8 @@ pub struct Peer<G: Game, T> {
     /// Reused buffer for the bytes of a tick's inputs.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
-    /// Error that stopped the simulation. Later updates return it again and only exchange packets, until this peer joins
-    /// again.
+    /// Error that stopped the simulation. Until this peer joins again, updates return this error and only exchange
+    /// packets.
     failure: Option<PeerError>,
 }
 
@@ -237,15 +237,16 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
     /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
     ///
-    /// A call issues the inputs of one tick: forget key presses then. When the input delay grows,
-    /// [`is_due`](Peer::is_due) remains true: further calls issue inputs of additional ticks, and then the next tick is
-    /// played.
+    /// Each call that returns `true` issues the inputs of one tick, so forget key presses after it. When the input
+    /// delay grows, [`is_due`](Peer::is_due) remains true: further calls issue inputs of additional ticks, and then the
+    /// next tick is played.
     ///
     /// # Errors
-    /// [`PeerError`] if the number of inputs is not the number of own seats, an input cannot be encoded, or the game or
-    /// its replay cannot continue, also after an error of [`update`](Peer::update). Inputs that are not due yet are no error: the result is `false`.
+    /// [`PeerError`] if the number of inputs is not the number of own seats, if an input cannot be encoded, or if the
+    /// game or its replay cannot continue, for example after an error of [`update`](Peer::update). If the inputs are
+    /// not due yet, the result is `false` and no error.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
-        // Inputs that are issued after a failure would let the others continue with a peer that plays no more.
+        // If inputs were issued after a failure, the other peers would continue with a peer that plays no more.
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
@@ -338,15 +339,15 @@ impl<G: Game, T: Transport> Peer<G, T> {
         }
     }
 
-    /// Sends the request to join to this contact, for example after a time without an answer. Discards a session in
-    /// progress; the new session has another [`PeerId`].
+    /// Sends the request to join to this contact, for example if an earlier request was not answered. Discards a
+    /// session in progress; the new session has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
         self.failure = None;
         self.endpoint.ask(contact);
     }
 
-    /// Leaves the match: the others continue without this peer. Call [`update`](Peer::update) until [`Status::Closed`].
-    /// Before the initial state has arrived, drop the [`Peer`] instead.
+    /// Leaves the match: the other peers continue without this peer. Call [`update`](Peer::update) until
+    /// [`Status::Closed`]. Before the initial state has arrived, drop the [`Peer`] instead.
     pub fn leave(&mut self) {
         if let Some(session) = self.endpoint.session_mut() {
             session.leave();

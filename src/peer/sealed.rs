@@ -24,8 +24,8 @@ const TAG: usize = 16;
 const WINDOW_WORDS: usize = 32;
 /// Length of a replay window. A packet is dropped if the newest packet of its sender is ahead by at least this number.
 const WINDOW: u64 = 2048;
-/// Maximum number of senders with a replay window. Beyond it, the window of the sender that has been silent longest is
-/// removed.
+/// Maximum number of senders with a replay window. For a further sender, the window of the sender that has been silent
+/// longest is removed.
 const SENDERS_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
@@ -83,7 +83,7 @@ impl Window {
         (usize::try_from(place / 64).unwrap_or(0), 1 << (place % 64))
     }
 
-    /// Whether a packet has not arrived yet. Packets older than the window count as arrived.
+    /// Whether the packet with this counter has not arrived yet. Packets older than the window count as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
             // `next` would overflow after the largest `u64`, which `Sealed` never sends.

@@ -176,14 +176,14 @@ impl<G: Game> Simulation<G> {
         bytes
     }
 
-    /// A complete replay of the committed ticks, with the bytes that have been taken.
+    /// A complete replay of the committed ticks, including the bytes that have been taken.
     pub(super) fn replay_so_far(&mut self) -> Result<Vec<u8>, PeerError> {
         let Some(recorder) = self.recorder.clone() else { return Ok(Vec::new()) };
         let rest = self.read_committed(|game| recorder.finish(game))??;
         Ok([&self.taken[..], &rest].concat())
     }
 
-    /// Reads the game after the last committed tick. The current tick is restored afterwards.
+    /// Calls `read` with the game after the last committed tick. Afterwards the game is at its current tick again.
     fn read_committed<R>(&mut self, read: impl FnOnce(&G) -> R) -> Result<R, PeerError> {
         if self.tick == self.committed {
             return Ok(read(&self.game));
@@ -225,8 +225,8 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. Both peers count with the seats that they had at the tick that differs, because
-    /// they may have left them since.
+    /// Creates the report of a desync. The report states for each of the two peers the seats that it had at the tick of
+    /// the desync, because it may have left them since.
     pub(super) fn report(
         &mut self,
         desync: &PeerDesync,

@@ -45,7 +45,7 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest datagram of UDP. On Windows, receiving a datagram longer than the buffer gives an error, as a failed
+    /// Largest datagram of UDP. With a shorter buffer, a longer datagram would give an error on Windows, as a failed
     /// socket does.
     const DATAGRAM_MAX: usize = 1 << 16;
 
@@ -76,8 +76,8 @@ mod udp {
         }
     }
 
-    /// The [`Address`] of a socket. IPv4 addresses mapped to IPv6 become IPv4 addresses. Link-local addresses keep their
-    /// scope, the number of a network interface of this machine.
+    /// The [`Address`] of a socket. IPv4 addresses mapped to IPv6 become IPv4 addresses. Link-local addresses keep
+    /// their scope, the number of a network interface of this machine.
     #[must_use]
     pub fn socket_address(address: SocketAddr) -> Address {
         let port = address.port().to_le_bytes();
@@ -140,7 +140,8 @@ mod udp {
                         return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
                     }
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
-                    // The system reports here that a receiver of an earlier packet is unreachable.
+                    // An earlier packet could not be delivered to its receiver. The system reports this error at the
+                    // next call.
                     Err(error)
                         if matches!(
                             error.kind(),

@@ -55,7 +55,7 @@ impl<'a> Cursor<'a> {
         self.array().map(i64::from_le_bytes)
     }
 
-    /// Reads a number in LEB128. The shortest form is required, so that the encoding of a log is unique.
+    /// Reads a LEB128 number. Requires the shortest form, so that each log has only one encoding.
     pub(super) fn varint(&mut self) -> Result<u32, ReadError> {
         let start = self.offset;
         let mut value: u64 = 0;

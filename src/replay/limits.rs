@@ -6,8 +6,8 @@ use super::reader::ReadError;
 /// Bounds on the size and computing time of a replay.
 ///
 /// The default allows a day at 60 Hz, and 20 000 million work units: a day with 150 bodies in contact, or some seven
-/// hours with 400 (`docs/VERIFYING.md`). Verifying a file that is made to be slow takes up to about five and a half
-/// hours. A server for one game should set its own limits.
+/// hours with 400 (`docs/VERIFYING.md`). The verification of a file that was made to be slow takes up to about five and
+/// a half hours. A server for one game should set its own limits.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -50,7 +50,8 @@ impl Default for Limits {
             ticks: 24 * 60 * 60 * 60,
             // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A work unit of the sandbox takes up to a microsecond in a file made to be slow (docs/VERIFYING.md).
+            // In a file that was made to be slow, a work unit of the sandbox takes up to a microsecond
+            // (docs/VERIFYING.md).
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }

@@ -36,7 +36,8 @@ pub fn play_within<G: Game, T>(
         world.start_work_meter(room);
     }
     let done = step(game, inputs);
-    // A world that has exhausted its work budget has a wrong state, so check the limits before the game is used.
+    // The state of a world that has exhausted its work budget is wrong, so the limits are checked before the game is
+    // used.
     let metered = game.world_mut().map_or(0, |world| world.stop_work_meter());
     let work = work.saturating_add(metered);
     *spent = before.saturating_add(work);

@@ -33,7 +33,7 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
-    /// Number of ticks that have been played within the limits. When they are played again, their work is not limited,
+    /// Number of ticks that have been played within the limits. Their work is not limited when they are played again,
     /// because the first tick after a loaded state costs more.
     admitted: u64,
     /// The verdict with which [`RawReplay::step`] failed. Further calls return it again.

@@ -120,7 +120,7 @@ impl core::error::Error for RecordError {}
 /// use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recorder, Verdict, verify};
 /// let (mut recorder, mut game) = Recorder::<Sandbox>::start(&SandboxSetup::default(), CHECKPOINT_INTERVAL)?;
 /// for _ in 0..90 {
-///     // Steps the game with the inputs as they were encoded and decoded.
+///     // Steps the game with the inputs as a verifier decodes them.
 ///     game.step(recorder.record(&[vec![]])?);
 ///     if recorder.is_checkpoint_due() {
 ///         recorder.checkpoint(game.state_hash());

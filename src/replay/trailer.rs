@@ -40,7 +40,8 @@ impl Trailer {
     /// Returns the first difference to the end of a game: the final hash, or the first claim by name.
     #[must_use]
     pub fn difference(&self, hash: StateHash, claims: &[(String, i64)]) -> Option<ClaimDifference> {
-        // The last checkpoint covers this state and agrees, so the trailer is wrong and the game has not diverged.
+        // The last checkpoint covers this state and agrees, so a different hash means that the trailer is wrong, and
+        // not that the game has diverged.
         if self.final_hash != hash {
             return Some(ClaimDifference::FinalHash { claimed: self.final_hash, actual: hash });
         }

@@ -113,7 +113,7 @@ pub enum ClaimDifference {
 ///
 /// ```
 /// use lockstep2d::replay::{Mismatch, Verdict};
-/// /// The name of a server's program for files that need other engine semantics than this program has.
+/// /// Name of the program that verifies files of other engine semantics.
 /// fn other_verifier(verdict: &Verdict) -> Option<String> {
 ///     match verdict {
 ///         Verdict::Unverifiable { why: Mismatch::Semantics { file, .. } } => Some(format!("verify-{file}")),

@@ -11,9 +11,9 @@ use crate::replay::Limits;
 /// Finds the first tick at which two trajectories (sequences of states) differ, the stage of that tick, and the
 /// differences, with the probable origin first. The search costs about as much as playing all ticks two or three times.
 ///
-/// Without `b`, the running engine simulates the inputs of `a`, and its states are the other trajectory. If `a` is a
-/// replay, the result is the two checkpoints between which the trajectories diverge. To find the exact tick, `a` has to
-/// be a desync report, or a [`Trace`](super::Trace) by the engine that wrote the replay.
+/// Without `b`, the running engine simulates the inputs of `a`, and the states of this simulation are the second
+/// trajectory. If `a` is a replay, the result is the two checkpoints between which the trajectories diverge. To find
+/// the exact tick, `a` has to be a desync report, or a [`Trace`](super::Trace) by the engine that wrote the replay.
 ///
 /// With `b`, the files are recordings of a match on two machines, or any two replays. Two snapshots are compared
 /// without a simulation.

@@ -32,7 +32,7 @@ pub(super) struct WrongTick<G: Game> {
     pub(super) before: G::Save,
     /// The inputs of the tick that leads to the wrong state.
     pub(super) inputs: Vec<G::Input>,
-    /// The hash that the diverged side states for the wrong state.
+    /// Hash of the wrong state, as stated by the side that diverged.
     pub(super) wrong: Said,
     pub(super) phases: Option<TickPhases>,
 }
@@ -55,7 +55,7 @@ pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     subjects
 }
 
-/// Difference of a body's motion in units of the last bit; 0 for other subjects.
+/// Difference of a body's velocities in units of the last bit; 0 for other subjects.
 fn disturbance(subject: &Subject) -> u128 {
     let is_motion = |difference: &&Difference| {
         BodyField::SPEEDS.iter().any(|field| difference.field().name() == field.name())
@@ -106,7 +106,7 @@ pub(super) fn explain<G: Game>(
             first.differences.sort_by_key(|difference| difference.field().name() != field.name());
         }
     }
-    // The difference of the states before and after the flip.
+    // The flip explains the difference between the states before and after it.
     game.load(&wrong.before);
     if when == When::After {
         game.step(&wrong.inputs);
@@ -187,8 +187,8 @@ fn loose_bodies<G: Game>(game: &mut G) -> Vec<BodyId> {
 }
 
 /// Returns the first candidate that leads to the wrong state, within `work` units. If `candidates` is empty, tries the
-/// bits of all bodies, first after the tick, then before it. The body with the flipped bit need not differ any more:
-/// the step may have restored it, so that only its contacts differ.
+/// bits of all bodies, first after the tick, then before it. The body with the flipped bit may no longer differ: the
+/// step may have restored the body, so that only its contacts differ.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,
@@ -208,7 +208,7 @@ fn search<G: Game>(
         .flat_map(|(when, bodies)| bodies.into_iter().flat_map(move |body| Candidate::all_of(body, when)));
     let loading = step_work / 2;
     left = work;
-    // The state that the game has, before or after the tick; `None` if one of its bits is flipped.
+    // Which state the game has: before or after the tick. `None` if one of its bits is flipped.
     let mut loaded = None;
     for candidate in candidates.into_iter().chain(of_bodies) {
         let Candidate { body, field, bit, when } = candidate;

@@ -208,7 +208,7 @@ pub struct Comparison {
     pub began: Vec<Subject>,
     /// A single bit flip that explains the differences.
     pub explanation: Option<Explanation>,
-    /// The checkpoint for which a report was written.
+    /// The tick of the checkpoint for which the reports were written.
     pub checkpoint: Option<u64>,
     /// The seats that agree at the checkpoint, largest group first.
     pub groups: Vec<Group>,

@@ -87,7 +87,8 @@ impl Evidence {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said {
     hash: StateHash,
-    /// Digest of the inputs that a checkpoint combines with the state hash; `None` if `hash` is a state hash.
+    /// Digest of the inputs that `hash` covers together with the state, for a checkpoint. `None` if `hash` is a state
+    /// hash.
     inputs: Option<StateHash>,
 }
 
@@ -123,7 +124,7 @@ impl<'a> SideEvidence<'a> {
         Ok(known)
     }
 
-    /// The side of the running engine with the inputs of another side.
+    /// The evidence of the running engine, which simulates the inputs of this side.
     pub(super) fn of_rerun(&self) -> Self {
         SideEvidence { replay: self.replay, ticks: self.ticks, is_rerun: true, ..SideEvidence::default() }
     }

@@ -72,7 +72,7 @@ impl TickPhases {
         32 + 16 * self.digests.len() + self.start_bytes()
     }
 
-    /// Drops the start of the step. The digests remain and still show the stage.
+    /// Drops the world at the start of the step. The digests remain and still show the stage.
     pub(super) fn forget_start(&mut self) {
         (self.start, self.start_length) = (Vec::new(), 0);
     }

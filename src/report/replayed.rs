@@ -20,9 +20,10 @@ pub(super) enum Effort {
     /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
     /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged, no difference is suspected ([`Beside::suspected`]), and more ticks would bring
-    /// no more states: the states of both sides are available, or the file of the diverged side has no further save.
-    /// The rerun and the search together take at most two and a half times the work of all ticks.
+    /// Plays until all of these conditions hold: a side has diverged; no difference is suspected
+    /// ([`Beside::suspected`]); more ticks would bring no more states, because the states of both sides are available
+    /// or the file of the diverged side has no further save. The rerun and the search together take at most two and a
+    /// half times the work of all ticks.
     Bounded,
 }
 
@@ -49,7 +50,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After the first different input, the states are expected to differ.
+    // After the first different input, the states are expected to differ, so they are compared only up to it.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -147,10 +148,10 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
-    /// A tick at which the sides may differ, and the side whose next hash decides. One side is the first to differ from
-    /// the rerun; the other side has no hash for this tick and has not diverged before. If the next hash of the other
-    /// side equals the rerun, the sides differ at this tick, because a diverged side does not converge again. Otherwise
-    /// both sides may have diverged in the same way.
+    /// A tick at which the sides may differ, and the side whose next hash decides. At this tick, one side is the first
+    /// to differ from the rerun. The other side has no hash for this tick and has not diverged before. If the next hash
+    /// of the other side equals the rerun, the sides differ at this tick, because a diverged side does not converge
+    /// again. Otherwise both sides may have diverged in the same way.
     suspected: Option<(u64, Side)>,
     /// The states of both sides at the first different tick for which both are available.
     states: Option<States<G::Save>>,
@@ -322,7 +323,7 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // Search for a flipped bit, unless the phases show which bit flipped before the step, or that no bit did.
+        // Searches for a flipped bit, unless the phases show which bit flipped before the step, or that none did.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

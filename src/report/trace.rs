@@ -77,8 +77,8 @@ impl<G: Game> Trace<G> {
     }
 
     /// Creates the report of the last ticks, with a replay from the start. To fit into the default of
-    /// [`Limits::file_bytes`], it leaves out saves and starts of steps, the oldest first. The replay and the hashes are
-    /// never left out.
+    /// [`Limits::file_bytes`], the report leaves out saves and the worlds at the starts of steps, the oldest first. It
+    /// never leaves out the replay and the hashes.
     #[must_use]
     pub fn report(&self) -> DesyncReport {
         let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
@@ -86,7 +86,8 @@ impl<G: Game> Trace<G> {
     }
 
     /// Simulates the inputs of a replay up to tick `until`, and reports the last `ticks` ticks. Checkpoints are not
-    /// compared. To fit into [`Limits::file_bytes`], the report leaves out saves and starts of steps, the oldest first.
+    /// compared. To fit into [`Limits::file_bytes`], the report leaves out saves and the worlds at the starts of steps,
+    /// the oldest first.
     ///
     /// # Errors
     /// [`TraceError`] if the file is malformed or unverifiable, exceeds a limit, or cannot be recorded again, or if the
@@ -132,9 +133,9 @@ impl<G: Game> Trace<G> {
 struct Memory<G: Game> {
     history: History<G>,
     phases: VecDeque<(u64, TickPhases)>,
-    /// Number of entries at the front of `phases` without the start of the step.
+    /// Number of entries at the front of `phases` whose world at the start of the step was dropped.
     bare: usize,
-    /// Length of all starts in bytes. A quarter of `bytes_max` is allowed.
+    /// Length in bytes of all worlds at the starts of steps in `phases`, at most a quarter of `bytes_max`.
     starts: usize,
     /// Maximum length of the report.
     bytes_max: u64,

@@ -1,12 +1,12 @@
-//! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are fields of the rows, the
-//! status records of peers (`row.rs`).
+//! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are fields of the peers'
+//! status records, which are called rows (`row.rs`).
 //!
 //! When a voter sees a ballot higher than all that it has promised, it promises this ballot and freezes its
 //! acknowledgement (`progress.rs`). Once a quorum has promised the ballot, its proposer chooses the change
 //! (`proposal.rs`): the change that the promisers accepted in the highest ballot, or a new change if they accepted
-//! none. A voter accepts the change if it has promised no higher ballot and holds all inputs before the cut. The change
-//! is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees these acceptances
-//! installs the change.
+//! none. A voter accepts the change if it has promised no higher ballot and holds all inputs before the cut (see
+//! below). The change is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees these
+//! acceptances installs the change.
 //!
 //! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. All final
 //! ticks lie before the cut, because a quorum has acknowledged them, and any two quorums have a voter in common.
@@ -32,7 +32,7 @@ pub(super) struct Agreement {
     pub(super) not_before: u64,
     /// Highest ballot round seen so far.
     pub(super) round: u32,
-    /// `round` at the start of the view.
+    /// Value of `round` at the start of the view.
     pub(super) base_round: u32,
     /// Time since which a change has been wanted without interruption.
     pub(super) wanted_since: Option<u64>,
@@ -108,7 +108,7 @@ impl Session {
         }
     }
 
-    /// A random wait in microseconds, so that competing proposers do not collide again.
+    /// Returns a random wait in microseconds, so that competing proposers do not collide again.
     pub(super) fn backoff(&mut self) -> u64 {
         let ballot = self.config.timing.ballot;
         ballot / 5 + self.random.below(ballot / 2)

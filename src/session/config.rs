@@ -17,8 +17,8 @@ pub const DELAY_MAX: u16 = 60;
 /// Largest size of an input in bytes.
 pub const INPUT_BYTES_MAX: u16 = 512;
 
-/// Time limits of a session, in microseconds. `patience` must be equal for all peers of a match. The other limits are at
-/// most a day.
+/// Time limits of a session, in microseconds. `patience` must be equal for all peers of a match. Each of the other
+/// limits is at most a day.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
@@ -29,7 +29,7 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time for which the others wait for a missing peer before they go on without it; `u64::MAX` for no limit.
+    /// Time for which the other peers wait for a missing peer before they continue without it; `u64::MAX` for no limit.
     /// [`Session::go_on_without`](super::Session::go_on_without) ends a stall earlier.
     pub patience: u64,
     /// Time for which a peer counts as heard after a packet. [`Event::Waiting`](super::Event::Waiting) reports a stall
@@ -48,7 +48,7 @@ pub struct Timing {
     /// peer waits for a decision.
     pub linger_max: u64,
     /// Upper bound of the time that counts as passed between two calls. Without this bound, a process that was
-    /// suspended would take the others for silent.
+    /// suspended would consider the other peers silent.
     pub step_max: u64,
 }
 
@@ -88,7 +88,8 @@ pub struct Config {
     pub input_bytes: u16,
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
-    /// Number of seats that must be taken before the first tick, at most `seats`. The value of the tie-holder counts.
+    /// Number of seats that must be taken before the first tick, at most `seats`. The value of the
+    /// [tie-holder](super::View::tie_holder) counts.
     pub start_with: u8,
     /// Bit for each seat that this peer asks for; 0 for any free seats.
     pub seats_wanted: u64,
@@ -242,7 +243,7 @@ pub enum Fault {
     NoFreeze,
     /// The cut is the acknowledgement of the proposer alone.
     OwnCut,
-    /// Complete ticks count as final.
+    /// Complete ticks (those with all inputs) count as final.
     FinalComplete,
     /// Half of the weight counts as a quorum.
     HalfIsEnough,
@@ -256,7 +257,7 @@ pub enum Fault {
     CompetingBallots,
     /// A proposal drops voters without a promise at once, without waiting for `patience`.
     Accuse,
-    /// A proposer ignores changes that others have accepted.
+    /// A proposer ignores changes that other voters have accepted.
     ForgetAccepted,
     /// A change is accepted without the inputs before its cut.
     AcceptBlind,

@@ -1,9 +1,10 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
-//! The rate changes about once per round trip, by additive increase and multiplicative decrease (Chiu and Jain 1989). A
-//! rate was too high if more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms. Such
-//! a rise indicates a queue, which delays the inputs of the match. Loss of up to an eighth is attributed to the link.
-//! Until the rate is too high for the first time, it grows by half after each period in which it limited the sending.
+//! The rate changes about once per round trip, by additive increase and multiplicative decrease (Chiu and Jain 1989).
+//! The rate was too high if more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms.
+//! Such a rise indicates a queue, which delays the inputs of the match. A loss of up to an eighth is attributed to the
+//! link. Until the rate is too high for the first time, it grows by half after each period in which it limited the
+//! sending.
 
 /// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;
@@ -72,7 +73,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Counts a sent chunk. `again` states that it was sent before and is assumed lost.
+    /// Counts a sent chunk. `again` is true if the chunk was sent before and is assumed lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;

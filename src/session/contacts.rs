@@ -1,8 +1,8 @@
 //! [`Contacts`]: the peers that a peer without a vote can ask for the match, if its contact falls silent.
 //!
 //! A spectator receives the match through its contact, the peer through which it joined. If recent rows of a majority
-//! are missing, the spectator starts the handshake of joining with other peers in turn. It then continues at its
-//! current tick.
+//! are missing, the spectator starts the join handshake with other peers, one after another. After a handshake, it
+//! continues at its current tick.
 
 use alloc::vec::Vec;
 
@@ -48,7 +48,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the contact to send a hello to, if one is due. `is_silent` states that recent rows of a majority are
+    /// Returns the contact to send a hello to, if one is due. `is_silent` is true if recent rows of a majority are
     /// missing. `nonce` returns the nonce of a new handshake.
     pub(super) fn update(
         &mut self,
@@ -76,8 +76,8 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Takes a challenge. Returns whether it answers this peer's hello and comes from the contact itself, which
-    /// confirms the contact's address. Another process at this address may be in another match.
+    /// Takes a challenge. Returns whether the challenge answers this peer's hello and comes from the contact itself,
+    /// which confirms the contact's address. Another process at this address may be in another match.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64, sender: PeerId) -> bool {
         let is_answer = |asked: &&mut PendingContact| asked.nonce == nonce && asked.id == sender;
         let Some(asked) = self.asked.as_mut().filter(is_answer) else { return false };

@@ -133,7 +133,7 @@ pub struct Endpoint {
     pub(super) events: VecDeque<JoinEvent>,
 }
 
-/// Identifiers of a peer, its secret, and its offer in the handshake.
+/// Identifiers of a peer, its secret, and the offer that it sends in the handshake.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};
@@ -239,7 +239,7 @@ impl Endpoint {
         self.attempts = self.attempts.wrapping_add(1);
         if let Phase::InMatch(session) = &self.phase {
             (self.role, self.config) = (session.role, session.config.clone());
-            // A new incarnation, because others have rows and inputs of the session that is discarded.
+            // A new incarnation, because other peers have rows and inputs of the session that is discarded.
             let [a, b, c, d, ..] = self.secret.hash(&self.attempts.to_le_bytes()).to_le_bytes();
             self.me = PeerId(u32::from_le_bytes([a, b, c, d]));
         }

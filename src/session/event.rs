@@ -29,20 +29,20 @@ pub enum Status {
     Playing,
     /// No recent status records of a majority have arrived, and only a majority can continue the match.
     Paused,
-    /// The others continue without this peer. A player requests a seat again.
+    /// The other peers continue without this peer. A player requests a seat again.
     Dropped,
-    /// The others removed this peer, or refuse it a seat because they removed its [`Key`](super::Key).
+    /// The other peers removed this peer, or refuse it a seat because they removed its [`Key`](super::Key).
     Kicked,
     /// Announces its departure.
     Leaving,
     /// Has left, and still answers peers that may not know about its departure yet.
     Left,
-    /// All ticks of the match are final. This peer still answers others.
+    /// All ticks of the match are final. This peer still answers other peers.
     Finished {
         /// Number of ticks of the match.
         ticks: Tick,
     },
-    /// Nothing more is sent.
+    /// Sends nothing more.
     Closed,
 }
 
@@ -98,12 +98,13 @@ pub enum Event {
         /// First tick without the peer in the seat.
         from: Tick,
     },
-    /// Play stalls because inputs of a peer are missing, or because the others may not run further ahead of that peer.
+    /// The game stalls because inputs of a peer are missing, or because other peers may not run further ahead of that
+    /// peer.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether status records of the peer arrive, directly or through others. If so, the peer is connected, but its
-        /// game does not advance.
+        /// Whether status records of the peer arrive, directly or through other peers. If so, the peer is connected,
+        /// but its game does not advance.
         heard: bool,
     },
     /// The stall of [`Event::Waiting`] is over.
@@ -141,6 +142,6 @@ pub enum Event {
         tick: Tick,
     },
     /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks or 1024 changes of the view behind.
-    /// The others may have dropped the inputs or changes that this peer lacks, so this peer has to join again.
+    /// The other peers may have dropped the inputs or changes that this peer lacks, so this peer has to join again.
     TooFarBehind,
 }

@@ -19,7 +19,7 @@ pub const GUESTS_MAX: usize = 64;
 const COOKIE_LIFE: u64 = 15_000_000;
 /// Time without a request after which a guest is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
-/// Time between announcements of a state until the guest asks for chunks, in microseconds.
+/// Time between announcements of a state, in microseconds. The announcements end when the guest asks for chunks.
 const WELCOME_INTERVAL: u64 = 200_000;
 
 #[derive(Debug)]
@@ -29,7 +29,7 @@ struct Guest {
     upload: Option<Upload>,
     asked: bool,
     welcome_at: u64,
-    /// Time of the guest's last request: to join, until its upload starts, and then for chunks.
+    /// Time of the guest's last request: to join until its upload starts, and then for chunks.
     heard_at: u64,
 }
 

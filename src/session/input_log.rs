@@ -1,4 +1,5 @@
-//! [`InputLog`]: the inputs of all spans. An input is issued once by the owner of its span and never changes.
+//! [`InputLog`]: the inputs of all spans. A span is the range of ticks in which one peer plays a seat (`view.rs`). This
+//! peer, the owner of the span, issues each input once, and the input never changes.
 
 use alloc::vec::Vec;
 
@@ -16,7 +17,7 @@ struct SpanLog {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
-    /// All inputs are known already, or would leave a gap.
+    /// All inputs are already known, or they would leave a gap.
     Nothing,
     /// The inputs from this tick on are new.
     From(Tick),
@@ -94,7 +95,7 @@ impl InputLog {
         if log.next > before { Added::From(before) } else { Added::Nothing }
     }
 
-    /// Drops the inputs before a tick, in each span where they are more than half of the kept inputs.
+    /// Drops the inputs before a tick from each span of which more than half of the kept inputs are before it.
     pub(super) fn forget_before(&mut self, tick: Tick) {
         for log in &mut self.spans {
             let until = tick.min(log.next);

@@ -16,7 +16,7 @@ pub(super) struct Lifecycle {
     since: Option<u64>,
     /// Whether this peer lost its vote against its will.
     dropped: bool,
-    /// Whether the tie-holder or a quorum votes to kick this peer, or did so when this peer lost its vote.
+    /// Whether the tie-holder or a quorum votes to kick this peer, or voted so when this peer lost its vote.
     kicked: bool,
     left: bool,
     /// The peer that play waits for, as last reported.
@@ -64,7 +64,7 @@ impl Session {
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
         }
-        // A peer removed with `Removal::Without` may return, so the vote ends with the removal.
+        // A peer removed with `Removal::Without` may return, so the vote ends when the peer is removed.
         let view = &self.view;
         self.wants.removals.retain(|removal| match *removal {
             Removal::Without(id) => view.voter(id).is_some(),
@@ -170,7 +170,7 @@ impl Session {
         !is_over && !self.lifecycle.kicked && self.view.voter(self.me).is_none() && !self.is_connected()
     }
 
-    /// Whether a peer that has finished or left may stop answering. `known` states that the others need no more
+    /// Whether a peer that has finished or left may stop answering. `known` is true if the other peers need no more
     /// answers.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
@@ -205,8 +205,8 @@ impl Session {
         self.events.push_back(Event::Waiting { peer, heard });
     }
 
-    /// Runs in each update, and not only when a stall begins: after an outage, the rows that show the lag arrive later
-    /// than the stall is reported.
+    /// Reports that this peer is too far behind. Runs in each update, and not only when a stall begins: after an
+    /// outage, the rows that show the lag arrive later than the stall is reported.
     fn tell_too_far_behind(&mut self, waits: bool) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);

@@ -5,8 +5,9 @@
 //! ticks. Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may
 //! differ. A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
 //!
-//! A voter catches up with the other players, not with the complete ticks. Inputs are issued ahead of play by the input
-//! delay: if all players played every complete tick at once, they would drive each other ahead without end.
+//! A voter catches up with the other players, and not with the complete ticks (those with all inputs). To play a tick
+//! is to issue inputs for a later tick. If all players played every complete tick at once, these inputs would complete
+//! further ticks, and all players would run ahead without end.
 
 use alloc::vec::Vec;
 
@@ -36,7 +37,7 @@ pub(super) struct Pace {
 
 /// A voter waits if it leads the slowest other player by more than this number of ticks.
 const AHEAD_MAX: Tick = 6;
-/// Largest lateness that is made up, in ticks.
+/// Maximum number of overdue ticks that are made up after a wait for inputs.
 const LATE_MAX: u64 = 3;
 /// A peer plays ticks before they are due while [`Pace::behind`] is at least this number.
 const CATCH_UP: Tick = 12;
@@ -93,7 +94,7 @@ impl Session {
         let tick = self.pace.tick_micros;
         let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
         let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
-        // Each tick makes up a 32nd of the difference.
+        // Each tick corrects 1/32 of the lead.
         let adjust = ahead * i64::try_from(tick).unwrap_or(0) / (PART * 32);
         let most = i64::try_from(tick / 8).unwrap_or(0);
         let adjust = adjust.clamp(-most / 2, most);

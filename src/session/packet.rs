@@ -51,7 +51,7 @@ pub(super) struct Header {
 pub(super) struct Packet {
     pub(super) header: Header,
     pub(super) row: Row,
-    /// Consecutive changes of the view, after the number of the view that the first change leads to.
+    /// Consecutive changes of the view. The number is that of the view to which the first change leads.
     pub(super) changes: (u32, Vec<Change>),
     pub(super) runs: Vec<Run>,
     pub(super) inputs: Vec<u8>,

@@ -7,12 +7,13 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
+/// Largest number of known peers. To add a further peer, the peer without a vote that has been silent longest is
+/// removed.
 const PEERS_MAX: usize = 192;
-/// Time in microseconds for which this peer serves a peer without a vote after the last packet of that peer. To serve a
-/// peer is to send it rows, changes and inputs.
+/// A peer without a vote is served until this time after its last packet, in microseconds. To serve a peer is to send
+/// it rows, changes and inputs.
 const SERVED: u64 = 5_000_000;
-/// Longest round trip through other peers that is measured, in microseconds. A longer one is due to an outage.
+/// Longest round trip through other peers that is measured, in microseconds. A longer one is attributed to an outage.
 const RELAYED_MAX: u64 = 1_000_000;
 
 /// Position in a series of runs. A series sends the inputs of a span that do not fit in one packet.
@@ -57,7 +58,7 @@ pub(super) struct Remote {
 }
 
 impl Remote {
-    /// Whether the peer is served even if it has no vote.
+    /// Whether the peer is to be served although it may have no vote.
     pub(super) fn is_served(&self, now: u64) -> bool {
         within(self.heard.max(self.attached), SERVED, now)
     }
@@ -75,7 +76,7 @@ impl Remote {
         }
     }
 
-    /// Time of the last sign of life, or the time at which the peer became known.
+    /// The latest of the times at which a row or packet of the peer arrived, the peer was attached, or became known.
     fn known_at(&self) -> Option<u64> {
         self.fresh.max(self.heard).max(self.attached).max(Some(self.contact))
     }

@@ -1,4 +1,4 @@
-//! Playing ticks: the inputs for the game, and rollback if ticks were played with inputs that turn out wrong.
+//! Plays ticks: the inputs for the game, and rollback of ticks that were played with wrong inputs.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use super::request::{InputSize, Request, TickInputs};
 use super::state::Session;
 use super::view::{bit, bits, has_bit};
 
-/// Number of this peer's hashes that are kept for comparison.
+/// Number of this peer's state hashes that are kept for comparison with those of other peers.
 const HASHES_MAX: usize = 16;
 
 #[derive(Clone, Debug)]
@@ -292,7 +292,7 @@ impl Session {
         self.play.played = tick.saturating_add(1);
     }
 
-    /// Notes which played ticks are final, and drops the data for rollbacks to them.
+    /// Updates the number of played ticks that are final, and drops the data for rollbacks to them.
     fn confirm(&mut self) {
         let play = &mut self.play;
         let confirmed = self.progress.fin.min(play.played);

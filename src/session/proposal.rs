@@ -20,8 +20,8 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Number of rounds without a decision up to which the time limit of a ballot grows linearly. Beyond it, the limit
-/// grows quadratically.
+/// Number of rounds without a decision up to which the time limit of a ballot grows linearly. After more rounds, the
+/// limit grows quadratically.
 const ROUNDS_MAX: u64 = 4;
 /// Upper bound of the time limit of a ballot in microseconds, unless `ROUNDS_MAX` times the initial limit is larger.
 const BALLOT_MAX: u64 = 6_000_000;
@@ -106,7 +106,7 @@ impl Session {
             .map(|(_, remote, row)| (remote, row))
     }
 
-    /// Peers without a vote that request seats and may get them.
+    /// Peers without a vote that request seats, and to which seats may be given.
     fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, SeatWant)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         self.peers.list.iter().filter_map(move |remote| {
@@ -272,8 +272,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first tick of joining peers. It allows for the round trips of promises and
-    /// acceptances, and for the arrival of the first inputs.
+    /// Number of ticks from the cut to the first tick of joining peers. It covers the round trips of promises and
+    /// acceptances, and the time until the first inputs arrive.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)

@@ -1,4 +1,4 @@
-//! Received packets and the passing of time.
+//! Processes received packets, and the time that passes.
 
 use super::config::{Fault, TIME_MAX};
 use super::event::Event;

@@ -66,8 +66,8 @@ impl Routes {
         !self.list.iter().any(|route| route.id == id && heard(route))
     }
 
-    /// Takes an address that is proven to belong to a peer. It replaces the peer's address if no packet has arrived
-    /// from there for [`KEPT`].
+    /// Takes an address that is proven to belong to a peer. This address replaces the current one if no packet has
+    /// arrived from the current one for [`KEPT`].
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };
         if route.address != Some(address)

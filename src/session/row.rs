@@ -37,7 +37,7 @@ pub(super) struct SeatWant {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Removal {
-    /// Play continues without this incarnation. It may return.
+    /// Play continues without this incarnation, which may return.
     Without(PeerId),
     /// This identity gets no seat any more.
     Kick(Key),
@@ -55,7 +55,7 @@ pub(super) struct Row {
     /// Number of ticks that the game has played.
     pub(super) played: Tick,
     /// For the first spans that end after `fin`, in order: the index, and the first tick whose input the sender lacks.
-    /// Others send no inputs of spans that are in this view and not in the list.
+    /// Other peers send the inputs of a span only if it is in this list, or newer than this view.
     pub(super) have: Vec<(u16, Tick)>,
     /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,

@@ -1,8 +1,8 @@
 //! Compression of the inputs of consecutive ticks: each input is XORed with the input before it, and the result is
 //! run-length encoded.
 //!
-//! A run starts with a LEB128 number: its length in bytes times two, plus one for a run of zeros. In a run of other
-//! bytes, the bytes follow the number. The decoder knows the total number of bytes.
+//! A run starts with a LEB128 number: the length of the run in bytes times two, plus one for a run of zeros. In a run
+//! of other bytes, the bytes follow the number. The decoder knows the total number of bytes.
 
 use alloc::vec::Vec;
 

@@ -241,7 +241,7 @@ impl Session {
         }
     }
 
-    /// Leaves the match: the others agree on a tick from which they continue without this peer. Call
+    /// Leaves the match: the other peers agree on a tick from which they continue without this peer. Call
     /// [`update`](Session::update) until [`Status::Closed`].
     pub fn leave(&mut self) {
         self.wants.leave = true;
@@ -255,8 +255,8 @@ impl Session {
         self.end_at = Some(ticks);
     }
 
-    /// Requests a pause, or withdraws the request: the others get [`Event::Pause`] if this peer has a vote, and the
-    /// session stops nothing. A pause is a time in which no game calls [`advance`](Session::advance), while all call
+    /// Requests a pause, or withdraws the request. If this peer has a vote, the other peers get [`Event::Pause`]. The
+    /// session itself does not stop. During a pause, no game calls [`advance`](Session::advance), and all games call
     /// [`update`](Session::update).
     pub fn pause(&mut self, paused: bool) {
         self.paused = paused;
@@ -272,8 +272,7 @@ impl Session {
 
     /// Votes to remove a peer, which gets no seat while enough votes count. The vote of the
     /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while this peer is a voter of the view. A peer
-    /// has at most eight votes: a ninth vote ends the oldest one, and the peer that the oldest vote concerned may
-    /// return.
+    /// has at most eight votes. A ninth vote ends the oldest one, so that the peer of the oldest vote may return.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }

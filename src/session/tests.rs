@@ -81,7 +81,7 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Flipped bits, prefixes and additional bytes cause no panic. The decoder refuses prefixes and additional bytes.
+/// Flipped bits, prefixes and additional bytes cause no panic. The decoder rejects prefixes and additional bytes.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();

@@ -25,7 +25,7 @@ pub(super) struct Outbox {
 
 /// Maximum number of packets waiting to be sent. The oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
-/// If a receiver lacks more than this number of a peer's inputs, others relay them even if the receiver hears that
+/// If a receiver lacks more than this number of a peer's inputs, other peers relay them even if the receiver hears that
 /// peer.
 const HELP_TICKS: Tick = 20;
 /// Interval, in row versions, at which a peer that has no vote or hears no quorum sends to all peers that it knows.
@@ -52,8 +52,8 @@ struct Run<'a> {
 }
 
 impl Session {
-    /// Usual time between packets in microseconds: a tick, at most [`INTERVAL_MAX`]; doubled above 16 peers, tripled
-    /// above 32.
+    /// Usual time between packets in microseconds: a tick, at most [`INTERVAL_MAX`]. Doubled with more than 16 peers,
+    /// tripled with more than 32.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.taking_part() {
             0..=16 => 1,
@@ -77,7 +77,7 @@ impl Session {
         1 + self.peers.list.iter().skip(1).filter(|remote| self.takes_part(remote)).count()
     }
 
-    /// Updates those fields of this peer's row that the agreement reads.
+    /// Updates the fields of this peer's row that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -134,7 +134,7 @@ impl Session {
         if now < self.outbox.next_at && !early {
             return;
         }
-        // New inputs are about to be issued: the packets wait for them, at most one interval.
+        // New inputs are about to be issued, so the packets wait for them for at most one interval.
         if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
             return;
         }
@@ -163,7 +163,7 @@ impl Session {
         tries || self.takes_part(remote)
     }
 
-    /// Sends a packet to a peer. Returns whether the peer is behind, and another packet would help.
+    /// Sends a packet to a peer. Returns whether the peer is so far behind that another packet would help.
     fn transmit_to(&mut self, place: usize, own: &[u8]) -> bool {
         let Some(to) = self.peers.list.get(place).filter(|remote| self.is_served(remote)) else {
             return false;
@@ -285,8 +285,8 @@ impl Session {
     }
 }
 
-/// Where the next packet continues, for each span with inputs that did not fit in the last one. Without these
-/// positions, each packet would repeat the same inputs until the receiver acknowledges them.
+/// Positions at which the next packet continues, for each span with inputs that did not fit in the last one. Without
+/// these positions, each packet would repeat the same inputs until the receiver acknowledges them.
 fn next_resumes(before: &[Resume], runs: &[Run], ends: &[Tick], now: u64) -> Vec<Resume> {
     let waits = |resume: &&Resume| runs.iter().skip(ends.len()).any(|run| run.span == resume.span);
     let cut = runs.iter().zip(ends).filter(|(run, end)| **end < run.until).map(|(run, &tick)| {

@@ -20,7 +20,8 @@ pub struct Voter {
     pub id: PeerId,
     /// Identity of the peer.
     pub key: Key,
-    /// Weight of the vote: 1, unless [`View::found`] sets another one. A voter that outweighs the others decides alone.
+    /// Weight of the vote: 1, unless [`View::found`] sets another one. A voter that outweighs all others together
+    /// decides alone.
     pub weight: u8,
 }
 
@@ -80,7 +81,7 @@ pub(super) struct Change {
     pub(super) from: Tick,
 }
 
-/// Membership of a match.
+/// Membership of a match: its voters, and which peer plays which seat in which ticks.
 ///
 /// ```
 /// use lockstep2d::session::{Key, PeerId, Span, View, Voter};
@@ -185,8 +186,8 @@ impl View {
         own.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// Bit for each seat that a peer played after `tick` ticks, or played last before them. A seat that nobody had
-    /// played by then counts for its first player.
+    /// Bit for each seat whose latest player up to `tick` is the peer. A seat that nobody has played by then counts for
+    /// its first player.
     pub(crate) fn seats_at(&self, id: PeerId, tick: Tick) -> u64 {
         let (mut known, mut own) = (0, 0);
         for span in self.spans.iter().filter(|span| span.from < span.until) {

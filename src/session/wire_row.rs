@@ -119,7 +119,7 @@ impl Row {
     }
 }
 
-/// Reads the length of a list whose flag is set. The length is not 0, because an empty list has no flag.
+/// Reads the length of a list whose flag is set. The length is not 0, because the flag of an empty list is not set.
 fn read_positive(reader: &mut Reader, max: usize) -> Decoded<usize> {
     match reader.count(max)? {
         0 => Err(Malformed),

@@ -5,8 +5,8 @@ use core::cell::Cell;
 use crate::math::{Shift, Speed, Vec2};
 
 /// Index of the ground, which represents all bodies that are not in the body list. Kernels never write to the ground.
-/// In the list of bodies to which a constraint writes, the ground therefore also replaces a body that no impulse
-/// changes.
+/// In the list of bodies that a constraint changes, the ground also replaces a body that no impulse changes, so that
+/// kernels skip this body.
 pub(crate) const GROUND: u32 = 0;
 
 /// A body in the solver: two halves of 16 bytes, each of which the SIMD kernels load as a whole. A body that no impulse

@@ -1,10 +1,10 @@
 //! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
 //! A kernel is a generic function over [`Lanes`], and a backend is an implementation of that trait. `Scalar<1>`
-//! processes one row at a time. The other backends process [`WIDTH`] rows that share no body, and use `Scalar<1>` for
-//! batches with a single row. No lane depends on another, so that every backend gives the same bits. Lanes hold only
-//! 32-bit numbers and their 64-bit products, because each vector instruction set has a widening multiplication 32 x 32
-//! -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
+//! processes one row of a constraint at a time. The other backends process [`WIDTH`] rows that share no body, and use
+//! `Scalar<1>` for batches with a single row. No lane depends on another, so that every backend gives the same bits.
+//! Lanes hold only 32-bit numbers and their 64-bit products, because each vector instruction set has a widening
+//! multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
 
 mod body;
 mod division;
@@ -31,8 +31,8 @@ use core::cell::Cell;
 /// Number of rows that a wide kernel processes at a time: eight, or four if vectors have 128 bits.
 pub(crate) use native::WIDTH;
 
-/// One number for each of `N` rows. Batches align these arrays for the widest load. A larger alignment of this type
-/// would make a single row as large as a vector.
+/// One number for each of `N` rows. Batches align these arrays for the widest load. If this type itself had that
+/// alignment, a single row would be as large as a vector.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
@@ -211,7 +211,7 @@ impl Machine {
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
 /// # world.spawn(&BodyDef::dynamic(), &[square])?;
 /// let start = world.save();
-/// // The same bits with every instruction set that this machine has.
+/// // Every instruction set of this machine gives the same bits.
 /// let mut hashes = Backend::available().map(|backend| {
 ///     world.restore(&start);
 ///     assert!(world.set_backend(backend));

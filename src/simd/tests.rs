@@ -144,7 +144,7 @@ fn every_backend_divides_as_plain_integers_do() {
     let mut rng = Rng::new(2);
     for round in 0..200_000u32 {
         let divisors = core::array::from_fn(|lane| match lane {
-            // Powers of two, exact quotients, and the neighbours of both.
+            // Powers of two, exact quotients, and the numbers next to both.
             0 | 1 => (1i64 << (round % 47).max(1)) + i64::from(rng.below(3)) - 1,
             2 | 3 => (1i64 << 60) / (i64::from(rng.below(1 << 30)) + 1) + i64::from(rng.below(3)) - 1,
             _ => i64::from(rng.next_u32()) << 14 >> rng.below(46),

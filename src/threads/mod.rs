@@ -1,5 +1,5 @@
-//! Threads that share a tick. Their number changes the speed, never the result, because between two barriers no thread
-//! reads anything that another thread writes.
+//! Threads that share a tick. The number of threads changes the speed, never the result, because between two barriers
+//! no thread reads anything that another thread writes.
 //!
 //! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. They
 //! wait for each other at barriers, about a hundred times in a tick. A barrier costs about 0.1 microseconds. A fork and
@@ -19,8 +19,8 @@ use barrier::Barrier;
 #[cfg(feature = "parallel")]
 use team::Team;
 
-/// Minimum number of active bodies for a tick on several threads. With fewer, barriers take more time than a second
-/// thread saves.
+/// Minimum number of active bodies for a tick on several threads. With fewer bodies, barriers take more time than a
+/// second thread saves.
 #[cfg(feature = "parallel")]
 const BODIES_MIN: usize = 256;
 
@@ -117,7 +117,7 @@ impl<T> TeamLock<T> {
     }
 }
 
-/// The part of `0..len` that one of `count` members works on. It ends at a multiple of `unit` or at `len`.
+/// The part of `0..len` that one of `count` members works on. The part ends at a multiple of `unit` or at `len`.
 pub(crate) fn part_of(len: usize, unit: usize, member: usize, count: usize) -> Range<usize> {
     let units = len.div_ceil(unit);
     let end = |member: usize| (units * member / count * unit).min(len);

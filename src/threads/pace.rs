@@ -1,4 +1,4 @@
-//! Decides which ticks the threads of a team share, by the times of earlier ticks.
+//! Decides which ticks the threads of a team share, according to the times of earlier ticks.
 //!
 //! The threads wait for each other about a hundred times in a tick. If other programs use the processors, a wait may
 //! last a time slice of the operating system, and a tick takes up to thirty times as long as with one thread. Small
@@ -7,7 +7,7 @@
 
 use core::time::Duration;
 
-/// Smallest number of ticks between two trials.
+/// Smallest number of ticks between two trials. In a trial, a tick runs in the mode that was slower so far.
 const TRIAL_MIN: u32 = 16;
 
 /// Largest number of ticks between two trials: 17 s at 60 Hz.

@@ -13,7 +13,7 @@ use super::{Member, Sharing};
 const LOOKS: u32 = 1000;
 
 /// Number of spins after a stage, while the other threads return from its last barrier. Without these spins, the
-/// calling thread would go to sleep, and waking it takes 50 microseconds.
+/// calling thread would go to sleep, and waking it would take 50 microseconds.
 const RETURN_SPINS: u32 = 100;
 
 #[derive(Debug)]

@@ -33,11 +33,11 @@ struct Vacancies {
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// Digest of the vacancies, then of each page. They are stored here so that reading them does not visit the pages.
+    /// Digest of the vacant slots, then of each page. Stored here so that reading the digests does not visit the pages.
     digests: Vec<StateHash>,
 }
 
-/// Cached copies, not part of the state. A cell is empty if its part of the arena has changed since the last copy.
+/// Cached copies, not part of the state. A cell is empty if its part of the arena has changed since it was last copied.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
@@ -82,7 +82,7 @@ impl<T> Kept<T> {
         }
     }
 
-    /// Invalidates the copies of the vacancies and of a slot's page.
+    /// Invalidates the copies of the list of vacant slots and of a slot's page.
     pub(super) fn came_or_went(&mut self, slot: u32, slot_count: usize) {
         self.fit(slot_count);
         self.changed(slot);
@@ -112,7 +112,7 @@ impl<T> Clone for SharedArena<T> {
 }
 
 impl<T> SharedArena<T> {
-    /// Digest of the vacancies, then of each page.
+    /// Digest of the vacant slots, then of each page.
     pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
         self.0.digests.iter().copied()
     }
@@ -130,8 +130,8 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Counter for caches of the fields that every step changes. It grows with each call of [`Arena::note_change`] and
-    /// of [`Arena::restore`], whose caller then sets those fields.
+    /// Counter for caches of the fields that every step changes. [`Arena::note_change`] and [`Arena::restore`]
+    /// increment it. After a restore, the caller sets these fields.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }

@@ -1,6 +1,7 @@
 //! Area, centre of mass and radius of gyration of a rounded convex polygon.
 //!
-//! For the core polygon about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties"):
+//! The core is the polygon without its rounding. Its moments about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly,
+//! "Polyhedral Mass Properties"), are
 //!
 //! ```text
 //! A            = 1/2 sum c_i
@@ -29,22 +30,22 @@ use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
 /// Moments of a region of uniform density.
 ///
-/// Sums do not overflow: at an extent of 110 m, `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below 2^30 m⁴, with
-/// 44, 32 and 88 fraction bits.
+/// Sums do not overflow: at an extent of 110 m, `2 A` is below 2^17 m² with 44 fraction bits, `|v|` below 2^9 m with 32
+/// fraction bits, and `2 J` below 2^30 m⁴ with 88 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Figure {
-    /// In m², with 44 fraction bits.
+    /// Twice the area in m², with 44 fraction bits.
     doubled_area: i128,
-    /// In metres, with 32 fraction bits.
+    /// Centre of mass in metres, with 32 fraction bits.
     centre: (i128, i128),
-    /// In m², with 44 fraction bits.
+    /// Square of the radius of gyration in m², with 44 fraction bits.
     gyration_squared: i128,
 }
 
 impl Figure {
     /// Moments of a counter-clockwise polygon.
     pub(super) fn of_polygon(vertices: &[Vec2<Length>]) -> Figure {
-        // Coordinates have 22 fraction bits, the area 44, and the moments 66 and 88.
+        // Coordinates have 22 fraction bits, the area 44, the first moments 66 and the second moment 88.
         let (mut area, mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128, 0i128);
         for (i, start) in vertices.iter().enumerate() {
             let end = vertices[(i + 1) % vertices.len()];
@@ -67,7 +68,7 @@ impl Figure {
     pub(super) fn rounded(self, vertices: &[Vec2<Length>], radius: Length) -> Figure {
         let r = i128::from(Fx::from(radius).to_bits());
         let (mut edges, mut arcs) = (0i128, 0i128);
-        // First moments have 64 fraction bits and the second 76.
+        // The first moments have 64 fraction bits, and the second moment 76.
         let (mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128);
         for (i, &vertex) in vertices.iter().enumerate() {
             let before = vertices[(i + vertices.len() - 1) % vertices.len()];
@@ -99,7 +100,7 @@ impl Figure {
         }
     }
 
-    /// In m², with 32 fraction bits, rounded down.
+    /// Area in m², with 32 fraction bits, rounded down.
     pub(super) fn area(&self) -> i128 {
         self.doubled_area >> 13
     }

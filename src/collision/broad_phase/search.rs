@@ -1,4 +1,4 @@
-//! Searches over boxes. A tree skips subtrees that a search does not reach, and the reach may shrink as results are
+//! Searches over boxes. A tree skips subtrees that are out of a search's reach, and the reach may shrink as results are
 //! found. [`Search::reaches`] accepts every box within reach, and may accept a box that is a few units of the last
 //! place out of reach.
 

@@ -59,7 +59,7 @@ impl SweepAndPrune {
         let axis = self.best_axis();
         let turned = core::mem::replace(&mut self.axis, axis) != axis;
         self.copy_boxes();
-        // After a change of axis or many insertions, an insertion sort would be quadratic.
+        // An insertion sort would be quadratic after a change of axis or many insertions.
         if turned || self.newcomers > 64 {
             self.sorted.sort_unstable_by_key(Interval::key);
         }

@@ -9,7 +9,7 @@ use alloc::vec;
 const KINDS: [BroadPhaseKind; 3] =
     [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
 
-/// A random number on a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
+/// A random multiple of 2^16 units of the last place, so that the oracle's products fit 128 bits.
 fn random_fx(rng: &mut Rng, half: i64) -> Fx {
     let step = 1 << 16;
     let range = (Fx::from_bits(-(half / step)), Fx::from_bits(half / step));

@@ -238,7 +238,7 @@ impl Tree {
                 let node = self.at(child);
                 let around = perimeter(node.aabb.union(fat));
                 let cost = grown.saturating_add(around);
-                // A deeper sibling adds at least the perimeter of the leaf and the growth of the child.
+                // A sibling below this child adds at least the perimeter of the leaf and the growth of the child.
                 let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
                 (if node.is_leaf() { cost } else { bound }, node.height, child, around)
             });

@@ -67,8 +67,7 @@ fn separations_follow_the_bodies() {
                 continue;
             };
             let error = separation.dist(point.separation);
-            // The normal turns by up to 0.0006 rad, as does the edge along which a point at the end of the overlap
-            // moves.
+            // The normal turns by up to 0.0006 rad, and so does the edge along which a clipped point moves.
             assert!(error < Step::lit("0.000007"), "{separation} instead of {}", point.separation);
             kept_points += 1;
         }

@@ -25,7 +25,7 @@ const DISTANCE_MAX: Fx = fx!(5);
 /// Largest speculative margin in metres.
 const MARGIN_MAX: Length = Length::lit("2");
 
-/// Compact copies of the boxes, by shape slot: half a cache line each, where a [`PosedShape`] takes four.
+/// Compact copies of the boxes, by shape slot. A copy takes half a cache line, and a [`PosedShape`] four lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
     turned: Vec<Turned>,

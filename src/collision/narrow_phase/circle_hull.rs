@@ -1,6 +1,6 @@
 //! A circle against a polygon, segment or capsule.
 //!
-//! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. From inside, the
+//! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. If it is inside, the
 //! nearest face pushes the circle out.
 
 use super::hull_hull::{self, FACE_BITS, Face};
@@ -30,7 +30,8 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // In line with a segment, beyond its end, the distance from both faces is 0, or slightly negative by rounding.
+        // A centre on the line of a segment, beyond its end, has distance 0 from both faces, or slightly less by
+        // rounding.
         Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
@@ -42,7 +43,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         return Manifold::NONE;
     }
     let separation = Step::from_bits(saturate(distance - radii));
-    // From the centre against the normal: `radius` to the surface, then half the separation to the middle of the gap.
+    // Distance from the circle's centre to the middle of the gap: `radius` to the surface, then half the separation.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })

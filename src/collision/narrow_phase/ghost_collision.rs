@@ -1,8 +1,8 @@
 //! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
 //!
-//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor also gives a plane,
-//! which would stop a sliding shape. Along a fixed axis `m`, the separation of two shapes with the relative velocity
-//! `v` that do not rotate is
+//! A contact is a plane that is fixed for a tick. At a seam of a flush floor, the corner of the next block also gives a
+//! plane, which would stop a shape that slides over the seam. Let two shapes that do not rotate have the relative
+//! velocity `v`. Their separation along a fixed axis `m` is
 //!
 //! ```text
 //! s(t) = s(0) + m.v t
@@ -19,8 +19,8 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
 /// Cosine between a face normal and the contact normal above which the contact is on that face.
 const SAME: Unit = Unit::lit("0.999999");
-/// Cosine (of 26 degrees) to the contact normal above which the filter does not test a face, if the contact is on a
-/// face.
+/// If the contact is on a face, the filter does not test faces whose cosine to the contact normal exceeds this value
+/// (26 degrees).
 const OWN: Unit = Unit::lit("0.9");
 
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,8 @@ pub(crate) struct GhostFilter {
     pub(crate) turn: Length,
     /// Overlap in metres that the filter tolerates and leaves to the next tick.
     pub(crate) slack: Length,
-    /// Largest approach along the axis in metres: a shape that falls onto a face does not pass by.
+    /// Largest approach along the axis in metres. A shape that approaches more falls onto the face and does not pass
+    /// it.
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,

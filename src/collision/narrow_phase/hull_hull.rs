@@ -13,8 +13,8 @@ use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
 /// B's best face becomes the reference face if its separation exceeds that of A's best face by more than this margin in
-/// metres. Otherwise the choice between two equal faces would flicker, and anchors would jump. Polygons with a
-/// separation above the margin count as disjoint.
+/// metres. Without the margin, the choice between two equal faces would change from tick to tick, and anchors would
+/// jump. Polygons with a separation above the margin count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// Fraction bits of the product of a length and a unit vector.
@@ -23,8 +23,8 @@ pub(in crate::collision) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(in crate::collision) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// The face that separated a pair in the last tick. Testing it first changes no result, because an axis with a gap
-/// beyond the margin proves that there is no contact.
+/// The face that separated a pair in the last tick. Testing it first does not change the result: if its separation
+/// exceeds the margin, there is no contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum CachedAxis {
     #[default]
@@ -39,8 +39,8 @@ pub(crate) struct SatCounters {
     pub(crate) searches: u32,
 }
 
-/// Cosine of 2.6 degrees, as a product of two [`Unit`] numbers. Two faces within this angle count as parallel. If the
-/// reference face alternated between rounded outlines, columns of 50 to 100 rounded boxes would fall.
+/// Cosine of 2.6 degrees, in the format of a product of two [`Unit`] numbers. Two faces within this angle count as
+/// parallel. If the reference face alternated between the outlines, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
 #[derive(Clone, Copy)]
@@ -62,7 +62,7 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let from_cache = match *cached_axis {
-        // The SIMD path has no cached axes. Ignoring them here too gives equal counters on all machines.
+        // The SIMD path has no cached axes. Ignoring them for the same pairs here gives equal counters on all machines.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -168,7 +168,7 @@ pub(in crate::collision) fn face_before(hull: &Hull, point: Vec2<Length>) -> Fac
 
 #[inline(never)]
 fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // A loop of constant length is unrolled.
+    // Loops over a constant number of vertices, which the compiler unrolls.
     let others = b.vertices();
     match others.len() {
         2 => furthest_from::<2>(a, others, d),

@@ -1,7 +1,7 @@
 //! A chain link against a circle or a convex outline.
 //!
-//! Without its neighbours, the end of a link would push back or up a shape that slides over it: a ghost collision. The
-//! neighbours decide which normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
+//! The end of a link without neighbours would push a shape that slides over it backwards or upwards: a ghost collision.
+//! The neighbours decide which normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
 //!
 //! ```text
 //! convex vertex    normals between the normals of the two links; each link has the half nearer to its own normal
@@ -9,7 +9,7 @@
 //! free end         every direction
 //! ```
 //!
-//! A point beside a chain belongs to one link, or to both inside a concave vertex.
+//! A point beside a chain belongs to one link. Inside a concave vertex, it belongs to both links.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{self, Face, TOLERANCE_WIDE};
@@ -41,7 +41,8 @@ enum Turn {
     Concave,
 }
 
-/// Decision on a candidate normal, which is the contact normal of the link and the shape without the rest of the chain.
+/// Decision on a candidate normal: the contact normal that the shape and the link would have if the link had no
+/// neighbours.
 enum Verdict {
     /// The link pushes along the candidate normal.
     Own,
@@ -92,14 +93,14 @@ impl Facing {
         })
     }
 
-    /// Decides on the contact normal that the shape and the link would have without the rest of the chain.
+    /// Decides on the contact normal that the shape and the link would have if the link had no neighbours.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
         if own > 0 && across.abs() <= PARALLEL {
             return Verdict::Own;
         }
-        // Normals turn clockwise from the link's own towards its start, and counter-clockwise towards its end.
+        // Normals clockwise of the link's own belong to its start, and normals counter-clockwise of it to its end.
         let (end, outwards) = if across < 0 { (self.start, 1) } else { (self.end, -1) };
         match end {
             LinkEnd::Free if self.one_sided && own < 0 => Verdict::Leave,
@@ -143,7 +144,8 @@ impl Facing {
             single((-vertex).normalized().unwrap_or(self.normal), distance, radius, margin)
         };
         let beside = || single(self.normal, distance_along(self.normal, -a), radius, margin);
-        // Inside a concave vertex, the other link is nearer, but a fast circle may reach this link within the tick.
+        // Inside a concave vertex, the other link is nearer to the circle. Contacts with this link are only
+        // speculative, because a fast circle may reach it within the tick.
         let ahead = |vertex: Vec2<Length>| {
             let near = step_bits(vertex.length()) - step_bits(radius) <= step_bits(margin);
             let contact = beside();

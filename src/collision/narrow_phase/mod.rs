@@ -22,8 +22,8 @@ use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 use link::Facing;
 
-/// Slack of the early reject in metres: covers the rounding of vertices and the half millimetre by which nearly
-/// parallel edges count as nearer than they are.
+/// Slack of the early reject in metres. It covers the rounding of vertices, and the 0.5 mm by which nearly parallel
+/// edges may count as nearer than they are.
 const REJECT_SLACK: Fx = fx!(0.001);
 
 /// Largest speculative margin in metres, within the range of a separation (16 m).
@@ -67,8 +67,8 @@ pub(crate) fn collide_near(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Anchors are relative to the centre of A. For a circle and a polygon, they are relative to the polygon instead,
-    // and for a segment or link, to the other shape.
+    // Anchors are relative to the centre of A, with two exceptions: in a pair of a circle and a polygon, to the centre
+    // of the polygon, and in a pair with a segment or link, to the centre of the other shape.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {

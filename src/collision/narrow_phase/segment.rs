@@ -63,7 +63,7 @@ fn clip_to_half_plane(
 
 /// Point between `p` and `q` at which a linear function is 0. Its values at the ends are `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
-    // The longest line has 2^63.5 units, so that the product hardly saturates.
+    // The longest line has 2^63.5 units, so the product saturates only near the limits of the number range.
     let part = |p: Fx, q: Fx| {
         let way = i128::from(q.to_bits()) - i128::from(p.to_bits());
         let moved = div_round(way.saturating_mul(at_p), at_p - at_q);

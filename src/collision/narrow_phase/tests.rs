@@ -136,7 +136,7 @@ fn separation_is_the_distance_of_outlines_that_are_apart() {
     );
 }
 
-/// No face normal of these shapes is a separating axis.
+/// No face normal of these shapes separates them, because they lie on one line.
 #[test]
 fn shapes_in_line_are_apart_and_pushed_along_the_line() {
     let pill = || Geometry::capsule(Vec2::new(fx!(-1), fx!(0)), Vec2::new(fx!(1), fx!(0)), fx!(0.5)).unwrap();

@@ -1,9 +1,9 @@
 //! Distance of two cores, which are shapes without their radii. GJK finds the point of `B - A` nearest to the origin
 //! (E. Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
 //!
-//! In two dimensions, a search direction is a vertex or the perpendicular of an edge, and neither needs rounding. With
-//! exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle. The separating
-//! axis test gives the depth of overlapping cores.
+//! In two dimensions, a search direction is the vector to a vertex or the perpendicular of an edge, and neither needs
+//! rounding. With exact signs, each step comes strictly nearer, so the search ends without a tolerance and cannot
+//! cycle. The separating axis test gives the depth of overlapping cores.
 
 use crate::collision::shape::support::{
     Fraction, Grid, SupportShape, cross, direction, edges, height, length, scaled, scaled_along,

@@ -4,8 +4,9 @@
 //! turn cuts the other ring (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
 //! to 2^-32. Areas and centres are exact sums, each rounded once.
 //!
-//! The ring of a rounded outline has a corner in each of 32 directions, at such a distance that the ring of a disc has
-//! the area of the disc. The outline is off by up to 0.4 % of the radius for a disc, and 1.7 % along a straight edge.
+//! The ring of a rounded outline has a corner in each of 32 directions. The corners are so far out that the ring of a
+//! disc has the area of the disc. The error of the outline is up to 0.4 % of the radius for a disc, and 1.7 % along a
+//! straight edge.
 
 use smallvec::SmallVec;
 
@@ -118,8 +119,8 @@ impl Ring {
             let middle = first + (*last - first).scale(fx!(0.5));
             return Some(Extent { size: first.distance(*last), centre: middle }).filter(|line| line.size > 0);
         }
-        // Twice the area and six times its first moments, with 64 and 96 fraction bits. Points are within a few hundred
-        // metres, so that the sums fit.
+        // Twice the area with 64 fraction bits, and six times its first moments with 96. Points are within a few
+        // hundred metres, so that the sums fit.
         let (mut double, mut moment) = (0i128, [0i128; 2]);
         for pair in rest.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|point| {

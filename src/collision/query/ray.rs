@@ -31,7 +31,7 @@ pub(crate) struct RayHit {
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// First hit of a ray. A segment is hit from both sides, and at its end by a ray that runs along the segment.
+/// First hit of a ray. A ray hits a segment from both sides, and a ray along the segment hits its end.
 pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
     if contains_point(shape, origin) {
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
@@ -90,14 +90,13 @@ fn enter_face(
     }
     let tangent = direction(e)?;
     let way = -cross(e, o - p) - times_length(radius, e, tangent);
-    // `way` is negative if a rounding error puts the start of the ray behind the face, although it is outside of the
-    // shape.
+    // `way` is negative if rounding puts the start of the ray behind the face although it is outside of the shape.
     if way < -times_length(radius.min(ROUNDING), e, tangent) || way > inwards {
         return None;
     }
     let fraction = Fraction::ratio(way.max(0), inwards);
     let on_face = if radius == 0 {
-        // Exact, so that no ray slips through a corner.
+        // Exact, so that no ray passes between two faces at a corner.
         (0..=inwards).contains(&cross(o - p, d))
     } else {
         (0..=dot(e, e)).contains(&dot(e, o + fraction.of(d) - p))

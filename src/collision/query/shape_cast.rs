@@ -19,8 +19,7 @@ pub(crate) const SKIN: Fx = fx!(0.0001);
 /// 0.2 µm.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
-/// Right shift that gives the largest approach that still counts as sliding: 2^-24 m per metre of movement, plus 2^-24
-/// m.
+/// Right shift of a translation to the largest approach that counts as sliding: 2^-24 m per metre, plus 2^-24 m.
 const SLIDING: u32 = 24;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -82,7 +82,7 @@ pub(crate) enum StartPolicy {
     Protect,
     /// The shapes may slide, roll and separate, but come closer by at most twice [`TOLERANCE`].
     Resist,
-    /// The result is a hit at fraction 0, or that the shapes overlap.
+    /// The result is [`TimeOfImpact::Hit`] at fraction 0, or [`TimeOfImpact::Overlapped`].
     Report,
 }
 
@@ -323,7 +323,7 @@ impl SweptShape {
     }
 }
 
-/// Each vertex is at `x + v h`, or behind this position by at most `curvature h^2`.
+/// Each vertex is at `x + v h` after the fraction `h`, or behind this position by at most `curvature h^2`.
 struct Tracks {
     count: usize,
     vertices: [(Fx, Fx); 8],

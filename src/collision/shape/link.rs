@@ -44,8 +44,8 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
-    /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of only the neighbour
-    /// counts up to the neighbour's far end: beyond that end, it may be on the left of the chain.
+    /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of the neighbour but not
+    /// of this link counts only up to the neighbour's far end. Beyond that end, it may be on the left of the chain.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, sides, .. } = *self;
         let is_before = (place - a).dot(a.towards(b)) < 0;

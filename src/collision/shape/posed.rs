@@ -8,7 +8,7 @@ use crate::collision::shape::link::Link;
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
 /// Largest distance in metres from the centre of a box to a corner, plus the rounding radius, for which the SIMD path
-/// takes the box.
+/// accepts the box.
 const BOX_REACH_MAX: Length = Length::lit("3");
 
 #[derive(Clone, Debug)]
@@ -138,7 +138,7 @@ impl Hull {
         if i == 0 { self.count.saturating_sub(1) } else { i - 1 }
     }
 
-    /// A circle.
+    /// A circle, as a hull of one point.
     pub(crate) fn point(radius: Length) -> Self {
         Hull { count: 1, radius, ..Self::empty() }
     }

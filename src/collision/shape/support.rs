@@ -12,7 +12,7 @@ use crate::collision::shape::link::Link;
 use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate_wide};
 
-/// In metres.
+/// A coordinate or length on the grid, in metres.
 pub(crate) type Grid = FixedI64<U28>;
 
 /// Larger than any radius in metres. Products of a radius and a length in `query/ray.rs` fit 128 bits.
@@ -55,7 +55,7 @@ impl SupportShape {
         SupportShape::from_points([centre], radius)
     }
 
-    /// From 1 to 8 vertices, counter-clockwise. Clamps the radius to 0 to [`RADIUS_MAX`].
+    /// Creates a support shape from 1 to 8 vertices, counter-clockwise. Clamps the radius to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
         SupportShape::from_grid_points(points.into_iter().map(to_grid), radius)
     }
@@ -149,18 +149,18 @@ fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
     Vec2::new(component(centre.x, offset.x, origin.x), component(centre.y, offset.y, origin.y))
 }
 
-/// Rounds to nearest.
+/// Converts to the grid, rounded to nearest.
 pub(crate) fn to_grid(v: Vec2<Fx>) -> Vec2<Grid> {
     let component = |x: Fx| Grid::from_bits(round_shift(x.to_bits(), FINER));
     Vec2::new(component(v.x), component(v.y))
 }
 
-/// Exact, saturated.
+/// Converts from the grid: exact, saturated.
 pub(crate) fn from_grid(v: Vec2<Grid>) -> Vec2<Fx> {
     Vec2::new(to_fx(v.x), to_fx(v.y))
 }
 
-/// Exact, saturated.
+/// Converts from the grid: exact, saturated.
 pub(crate) fn to_fx(x: Grid) -> Fx {
     Fx::from_bits(saturate_wide(i128::from(x.to_bits()) << FINER))
 }
@@ -188,7 +188,7 @@ fn product(a: Grid, b: Grid) -> i128 {
     i128::from(a.to_bits()) * i128::from(b.to_bits())
 }
 
-/// Rounded to nearest.
+/// Length of a vector, rounded to nearest.
 pub(in crate::collision) fn length(v: Vec2<Grid>) -> Grid {
     Grid::from_bits(raw(v).length().to_bits())
 }
@@ -203,7 +203,8 @@ pub(in crate::collision) fn along(n: Vec2<Unit>, v: Vec2<Grid>) -> Grid {
     Grid::from_bits(saturate_wide(round_shift_wide(scaled_along(n, v), Unit::FRAC_NBITS)))
 }
 
-/// `n . v` in units of 2^-58 m: the length of `v` if `n` is its direction, with a relative error of 1.5e-9.
+/// `n . v` in units of 2^-58 m. If `n` is the direction of `v`, this is the length of `v`, with a relative error of
+/// 1.5e-9.
 pub(in crate::collision) fn scaled_along(n: Vec2<Unit>, v: Vec2<Grid>) -> i128 {
     let product = |n: Unit, x: Grid| i128::from(n.to_bits()) * i128::from(x.to_bits());
     product(n.x, v.x) + product(n.y, v.y)
@@ -221,8 +222,8 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
 /// Distance of a point from a line. `cross` is the cross product of a vector along the line with the vector from the
 /// line to the point, and `scaled_length` the length of the vector along the line, from [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // If the cross product exceeds 2^97, the height exceeds any distance of interest, and losing a few of its bits does
-    // no harm.
+    // A cross product above 2^97 gives a height beyond any distance of interest, so losing a few of its bits does no
+    // harm.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {
@@ -240,15 +241,15 @@ impl Fraction {
     const FRAC_NBITS: u32 = 62;
     const ONE: i64 = 1 << Self::FRAC_NBITS;
 
-    /// Rounded down, for `0 <= numerator <= denominator != 0`. If the denominator has more than 64 bits, both numbers
-    /// lose the excess bits.
+    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`. If the denominator has more
+    /// than 64 bits, both numbers lose the excess bits.
     pub(in crate::collision) fn ratio(numerator: i128, denominator: i128) -> Self {
         let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
         let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);
         Fraction(saturate_wide(quotient).clamp(0, Self::ONE))
     }
 
-    /// Rounded to nearest.
+    /// The fraction of a vector, rounded to nearest.
     pub(in crate::collision) fn of(self, v: Vec2<Grid>) -> Vec2<Grid> {
         let part = |x: Grid| {
             let product = i128::from(x.to_bits()) * i128::from(self.0);
@@ -257,7 +258,7 @@ impl Fraction {
         Vec2::new(part(v.x), part(v.y))
     }
 
-    /// Rounds down.
+    /// Converts to world format, rounded down.
     pub(in crate::collision) fn to_fx(self) -> Fx {
         Fx::from_bits(self.0 >> (Self::FRAC_NBITS - Fx::FRAC_NBITS))
     }

@@ -71,7 +71,7 @@ fn shared(a0: Grid, a1: Grid, b0: Grid, b1: Grid) -> Option<(i128, i128)> {
         let t = between.0 * a.1 - between.1 * a.0;
         return (unit(s, determinant) && unit(t, determinant)).then_some((s, determinant));
     }
-    // Parallel segments: steps along `a` that visit every grid point on it.
+    // Parallel segments: the steps visit every grid point on `a`.
     let steps = a.0.abs().max(a.1.abs()).max(1);
     (0..=steps).find_map(|step| {
         let exact =
@@ -112,7 +112,7 @@ fn segments_meet_where_rational_arithmetic_says() {
 fn the_diagonals_of_the_world_meet() {
     let [a, b, c, d] = [(Fx::MIN, Fx::MIN), (Fx::MAX, Fx::MAX), (Fx::MIN, Fx::MAX), (Fx::MAX, Fx::MIN)]
         .map(|(x, y)| Vec2::new(x, y));
-    // The exact value is minus half a unit, and ties round up.
+    // The exact coordinate is minus half a unit, and ties round up to 0.
     assert_eq!(segment_intersection(a, b, c, d), Some(Vec2::new(Fx::ZERO, Fx::ZERO)));
     assert_eq!(segment_intersection(b, a, d, c), Some(Vec2::new(Fx::ZERO, Fx::ZERO)));
     assert_eq!(closest_point_on_segment(c, a, b), Vec2::new(Fx::ZERO, Fx::ZERO));

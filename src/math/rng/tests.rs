@@ -13,8 +13,8 @@ fn follows_the_reference_implementation() {
 #[test]
 fn every_remainder_is_equally_likely() {
     let mut rng = Rng::new(1);
-    // The first bound rejects a quarter of the draws. Without these rejections, every third number would be twice
-    // as likely.
+    // With the first bound, a quarter of the draws is rejected. Without the rejections, every third number would be
+    // twice as likely.
     for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
         let mut counts = [0_i64; 10];
         for _ in 0..60_000 {

@@ -9,7 +9,7 @@ fn draw(rng: &mut Rng) -> i64 {
     i64::from_ne_bytes(rng.next_u64().to_ne_bytes()) >> shift
 }
 
-/// `(root - 1/2)^2 < n < (root + 1/2)^2`.
+/// Whether `(root - 1/2)^2 < n < (root + 1/2)^2`.
 fn is_nearest_root(root: u128, n: u128) -> bool {
     (root == 0 || root * root - root < n) && n <= root * root + root
 }
@@ -121,7 +121,8 @@ fn the_inverse_root_is_within_its_bound() {
     let mut rng = Rng::new(4);
     let edges = [1 << 62, (1 << 62) + 1, (1 << 63) - 1, 1 << 63, u64::MAX];
     for n in edges.into_iter().chain((0..50_000).map(|_| rng.next_u64() | 1 << 62)) {
-        // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides are multiplied by 100 and squared.
+        // y = 2^63 / sqrt(n) means y^2 n = 2^126. All y are multiplied by 100, so that the tolerance of 0.51 is an
+        // integer.
         let y = u128::from(inverse_root(n)) * 100;
         let squared = |y: u128| (y * y) >> 6;
         // Both sides are about 2^139. Without their last 22 bits (6 of the square and 16 of n), they fit 128 bits.
@@ -136,7 +137,7 @@ fn the_root_from_the_inverse_is_nearest_where_rounding_turns() {
     let mut rng = Rng::new(6);
     for _ in 0..50_000 {
         let root = (rng.next_u64() >> (33 + rng.below(31))).max(1);
-        // root^2 + root rounds down to root, and the next integer rounds up.
+        // The root of root^2 + root rounds down to `root`, and the root of the next integer rounds up.
         for n in [root * root, root * root + root, root * root + root + 1] {
             let shift = n.leading_zeros() & !1;
             let found = root_from_inverse(n, shift, inverse_root(n << shift));

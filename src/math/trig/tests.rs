@@ -38,8 +38,8 @@ fn sine_is_within_079_units() {
         let (sin, _) = slow_sin_cos(angle);
         largest = largest.max((i128::from(sine(angle)) * (1 << 30) - sin).abs());
     }
-    // Thousandths of 2^-30, rounded down: 789 means below 0.79 units. The lower bound shows that the sweep finds large
-    // errors, although it does not visit all angles.
+    // Thousandths of 2^-30, rounded down: 789 means below 0.79 units. The lower bound of the assertion shows that the
+    // sweep finds large errors, although it does not visit all angles.
     let thousandths = (largest * 1000) >> 30;
     assert!(
         (500..=789).contains(&thousandths),
@@ -65,7 +65,7 @@ fn symmetries_are_exact() {
 fn cosine_and_sine_are_on_the_circle() {
     for angle in angles() {
         let (sin, cos) = (i64::from(sine(angle)), i64::from(sine(angle.wrapping_add(QUARTER))));
-        // The tolerance is twice 0.79 sqrt 2 units.
+        // The tolerance is twice the largest error of the vector, 0.79 sqrt 2 units.
         let excess = sin * sin + cos * cos - (1 << 60);
         assert!(excess.abs() * 100 <= 224 << 30, "{angle}: {excess}");
     }

@@ -216,7 +216,7 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-/// Inserts the saves of a file into `keyframes`. If they exceed the memory budget, `keyframes` thins them out.
+/// Inserts the saves of a file into `keyframes`, which removes some of them if they exceed the memory budget.
 pub(super) fn place(body: Body, ticks: u64, keyframes: &mut Keyframes<'_>) -> Result<(), KeyframesError> {
     let mut position = keyframes.first().position.clone();
     for (tick, Save(save)) in body.saves {

@@ -46,7 +46,7 @@ use crate::world::World;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineOptions {
     /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
-    /// blocks, so that keyframes can be compared with checkpoints.
+    /// blocks, so that every keyframe is at a checkpoint and can be compared with it.
     pub interval: u32,
     /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of this
     /// amount in addition.
@@ -147,7 +147,7 @@ pub struct Timeline<'a, G: Game> {
     simulated: u64,
     /// The first tick that cannot be reached, and the reason.
     failed: Option<(u64, Verdict)>,
-    /// Whether the state of the game is wrong, that is, not the state of the current tick.
+    /// Whether the state of the game is not the state of the current tick.
     is_wrong: bool,
 }
 
@@ -225,7 +225,7 @@ impl<'a, G: Game> Timeline<'a, G> {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by further ones, so it leaves a trail for them.
+        // A short seek backwards is usually followed by more of them, so it leaves a trail for them.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {

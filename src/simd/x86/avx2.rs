@@ -321,7 +321,7 @@ fn magnitude(a: __m256i) -> __m256i {
 #[target_feature(enable = "avx2")]
 unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
     let product: __m256i;
-    // SAFETY: see `Avx2`; nothing but the result is changed.
+    // SAFETY: see `Avx2`. The assembly changes nothing but the result.
     unsafe {
         core::arch::asm!(
             "vpmuldq {product}, {a}, {b}",

@@ -1,6 +1,6 @@
 //! AVX-512 backend: eight lanes in a vector of 512 bits. Each number is the lower half of 64 bits, and the upper half
-//! is undefined. Eight products then fit one vector, factors need no shuffle, and a product that has been shifted down
-//! already has the format of a number.
+//! is undefined. In this layout, eight products fit one vector, factors need no shuffle, and a product that has been
+//! shifted down is already a number.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx512/division.rs"]
@@ -279,7 +279,7 @@ impl Lanes<WIDTH> for Avx512 {
 #[target_feature(enable = "avx512f")]
 unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {
     let product: __m512i;
-    // SAFETY: see `Avx512`; nothing but the result is changed.
+    // SAFETY: see `Avx512`. The assembly changes nothing but the result.
     unsafe {
         core::arch::asm!(
             "vpmuldq {product}, {a}, {b}",

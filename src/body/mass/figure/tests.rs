@@ -40,7 +40,7 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
-    // 1 and pi, both multiplied by 12 and by the denominator of pi.
+    // The common denominator of all terms, and pi in units of that denominator.
     let (over, pi) = (12 * PI_DENOMINATOR, 12 * PI_NUMERATOR);
     let area = over * (4 * a * b + 4 * (a + b) * r) + pi * r * r;
     let core = over / 3 * 4 * a * b * (a * a + b * b);
@@ -87,7 +87,7 @@ fn a_triangle_in_a_large_radius_is_nearly_a_disc() {
     let points = [vertex(fx!(0), fx!(0)), vertex(fx!(0.001), fx!(0)), vertex(fx!(0), fx!(0.001))];
     let triangle = Polygon::new(&points).unwrap().rounded(fx!(100)).unwrap();
     let actual = figure(&triangle);
-    // The perimeter is 3.4 mm, so the area exceeds that of the disc by 0.34 m² of 31416 m².
+    // The core has a perimeter of 3.4 mm, which adds 0.34 m² to the 31416 m² of the disc.
     close(actual.doubled_area, i128::from(PI.to_bits() * 20000) << 12, 50_000);
     close(actual.gyration_squared, 5000 * ONE, 50_000);
     near(actual.centre, (0, 0), fx!(0.001));

@@ -14,8 +14,9 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling if the exchange shrinks the sibling. The new height differs from
-    /// `height_before` by at most one, because the ancestors can compensate no more.
+    /// Exchanges a child with a child of its sibling if the exchange shrinks the sibling. The new height of `at`
+    /// differs from `height_before` by at most one, because [`Tree::balance`] of an ancestor restores no larger
+    /// difference.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
@@ -37,7 +38,8 @@ impl Tree {
         }
     }
 
-    /// Whether a node stays balanced with the first of three nodes as a child and the other two as grandchildren.
+    /// Whether a node stays balanced if the first of three nodes becomes its child, and the other two its
+    /// grandchildren.
     fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);

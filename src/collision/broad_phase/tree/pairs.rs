@@ -9,8 +9,8 @@ use crate::collision::contact::Pair;
 /// Number of buffered pairs at which the buffer is reported and emptied.
 const FOUND_MAX: usize = 256;
 
-/// List with a branch-free push: overlaps are nearly random, and a mispredicted branch costs more than an unnecessary
-/// store. A push always writes the pair, but counts only a wanted pair.
+/// List with a branch-free push: whether two boxes overlap is hard to predict, and a mispredicted branch costs more
+/// than an unnecessary store. A push always writes the pair, but counts only a wanted pair.
 #[derive(Clone, Debug, Default)]
 struct PairList {
     pairs: Vec<Pair>,
@@ -47,7 +47,8 @@ impl PairList {
 
 #[derive(Clone, Debug, Default)]
 pub(in crate::collision::broad_phase) struct Meetings {
-    /// Overlapping pairs with at least one inner node, and inner nodes paired with themselves.
+    /// Pairs of nodes still to visit: overlapping pairs with at least one inner node, and inner nodes paired with
+    /// themselves.
     waiting: PairList,
     found: PairList,
 }

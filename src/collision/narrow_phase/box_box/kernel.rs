@@ -1,13 +1,12 @@
 //! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes.
 //!
-//! With a face normal `n` of a box, a vertex `v` on that face, the vector `d` to the centre of another box and that
-//! box's vertices `w`,
+//! Let `n` be a face normal of a box, `v` a vertex of that face, `d` the vector to the centre of another box, and `w`
+//! the vertices of the other box relative to its centre. The separation of the boxes along `n`, from this face or from
+//! the opposite face, whichever is nearer, is
 //!
 //! ```text
 //! separation = |n . d| - n . v - max |n . w|
 //! ```
-//!
-//! is the separation of the boxes along `n`, from the nearer of the face and the opposite face.
 
 use super::vector::{Vector, dot, minus, negated, plus, select_vector};
 use super::{Batch, Manifolds, Turned};
@@ -22,7 +21,7 @@ const CLIP: i32 = shift(CLIP_BITS);
 
 pub(super) struct Collide<'a> {
     pub(super) batches: &'a mut [Batch],
-    /// By slot.
+    /// Boxes by shape slot.
     pub(super) boxes: &'a [Turned],
 }
 
@@ -57,7 +56,7 @@ struct ClipPoint<T> {
 /// Radii and margin are in units of `Step`.
 struct Reference<T> {
     n: Vector<T>,
-    /// From the centre of A.
+    /// Start of the edge, relative to the centre of A.
     start: Vector<T>,
     radii: T,
     /// Radius of the reference box minus that of the incident box.
@@ -109,7 +108,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let from_reference = select_vector::<L>(swapped, negated::<L>(d), d);
     let to_incident = minus::<L>(from_reference, reference.start);
     let length = along::<L>(reference.n, minus::<L>(reference.end, reference.start));
-    // The incident edge runs against the reference edge.
+    // The incident edge points in the opposite direction of the reference edge, so its start is the upper end.
     let upper = end::<L>(reference.n, plus::<L>(to_incident, incident.start));
     let lower = end::<L>(reference.n, plus::<L>(to_incident, incident.end));
     let mut open = L::either(L::greater(zero, upper.along), L::greater(lower.along, length));
@@ -215,7 +214,7 @@ fn best_face<L: Lanes<WIDTH>>(
 ) -> (Choice<L::Mask>, L::Wide) {
     let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
     let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
-    // On a tie the second candidate wins if it is face 1 and the first one is face 2.
+    // On a tie, the second candidate wins only if it is face 1 and the first candidate is face 2.
     let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
     let advantage = L::mul(L::to_int(ahead), L::splat(-1));
     let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
@@ -223,7 +222,7 @@ fn best_face<L: Lanes<WIDTH>>(
     (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
 }
 
-/// Whether `b` is on the side of the opposite face, and its separation from the nearer of the two faces.
+/// Whether `b` is on the side of the opposite face, and the separation of `b` from the nearer of the two faces.
 #[inline(always)]
 fn further_of_opposite<L: Lanes<WIDTH>>(
     n: Vector<L::Int>,
@@ -296,7 +295,7 @@ fn along<L: Lanes<WIDTH>>(n: Vector<L::Int>, p: Vector<L::Int>) -> L::Int {
     L::narrow::<UNIT>(L::sub_wide(L::mul(n[0], p[1]), L::mul(n[1], p[0])))
 }
 
-/// Whether a corner and an end of the reference edge are nearest to each other: each lies beyond the end of the other
+/// Whether a corner and an end of the reference edge are nearest to each other: each lies beyond an end of the other's
 /// edge. The incident edge runs from `corner` to `other`.
 #[inline(always)]
 fn nearest_at_corner<L: Lanes<WIDTH>>(

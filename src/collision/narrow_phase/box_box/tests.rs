@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 
 /// A box within the size limit of the SIMD path, and its half extents.
 fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
-    // Whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
+    // Multiples of 1/1024 m, so that opposite corners are exact opposites.
     let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
     let mut size = || i64::from(50 + rng.below(size_max - 50));
     let (width, height) = (size(), size());
@@ -25,7 +25,7 @@ fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
     (polygon.rounded(radius).expect("valid"), Vec2::new(width + radius, height + radius))
 }
 
-/// Two boxes that touch or nearly touch, most of them at nearly right angles as in piles.
+/// Two boxes that touch or nearly touch. Most of them are nearly at right angles to each other, as in piles.
 fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
     let ((a, reach_a), (b, reach_b)) = (random_box(rng), random_box(rng));
     let turned = match rng.below(4) {

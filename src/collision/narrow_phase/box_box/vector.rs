@@ -1,4 +1,4 @@
-//! Vectors in lanes.
+//! 2D vectors whose components are SIMD lanes.
 
 use crate::simd::{Lanes, WIDTH};
 

@@ -13,10 +13,10 @@ use crate::collision::narrow_phase::circle_hull::step_bits;
 use crate::collision::shape::posed::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
-/// Number of fraction bits that a `Step` has more than a `Length`.
+/// Difference between the numbers of fraction bits of a `Step` and of a `Length`.
 pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
-/// Fraction bits of the clip fraction, whose product with an edge of at most 570 m has 63 bits.
+/// Fraction bits of the clip fraction. Its product with the length of an edge, at most 570 m, has 63 bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
 /// End of an edge relative to the start of the reference edge, not saturated: `along` in units of `Length`, and `above`
@@ -53,8 +53,8 @@ pub(in crate::collision) fn clip(
     let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
     let mut incident = incident_edge(b, normal);
     let (mut upper, mut lower) = edge_of_b(incident);
-    // On an outline with small bends, the edge most opposed to the face may lie beside the face while a neighbour of
-    // that edge is in front of the face. For separate outlines the nearest corner is an end of the most opposed edge.
+    // On an outline with small bends, the edge most opposed to the face may lie beside the face while one of its
+    // neighbours is in front of the face. For separate outlines, the nearest corner is an end of the most opposed edge.
     let neighbours = if apart { 0 } else { b.faces() };
     for _ in 0..neighbours {
         let neighbour = if upper.along < first.along {
@@ -86,7 +86,8 @@ pub(in crate::collision) fn clip(
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
         // Nearly parallel rounded edges also have two corners as nearest points, but need a contact point at each end.
-        // Their corners are not much nearer than the clipped edge, and not much further than the face.
+        // They are recognised by the distance of the corners, which is not much below the height of the clipped edge
+        // and not much above the separation of the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
@@ -122,8 +123,8 @@ fn nearest_corners(
     })
 }
 
-/// Edge whose normal is most opposed to `normal`. The first edge wins a tie; in a tie between edges of a box, however,
-/// edge 0 or 2 wins.
+/// Edge whose normal is most opposed to `normal`. The first edge wins a tie. In a tie between edges of a box, edge 0 or
+/// 2 wins.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);
@@ -144,7 +145,7 @@ fn bends_little(b: &Hull, edge: usize, neighbour: usize) -> bool {
     dot(b.normal(edge), b.normal(neighbour)) > COS_EIGHTH
 }
 
-/// With 60 fraction bits.
+/// `a . b` with 60 fraction bits.
 #[inline]
 fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
     i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())

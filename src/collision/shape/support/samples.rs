@@ -32,7 +32,7 @@ pub(in crate::collision) fn support(rng: &mut Rng) -> SupportShape {
     }
 }
 
-/// Points up to 107 m from the centre, and a radius of up to 30 m.
+/// A shape with points up to 107 m from the centre, and a radius of up to 30 m.
 pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
     let support = support(rng);
     let points: Vec<_> = world_points(&support).into_iter().map(|point| point.scale(fx!(75))).collect();

@@ -18,9 +18,9 @@ const CHORDS: usize = 16;
 /// Number of mantissa bits that give the position on the chord.
 const REST: u32 = 27;
 
-/// `2^62 / m` at the start of each chord, less 1, so that the values fit 31 bits.
+/// `2^62 / m` at the start of each chord, minus 1, so that the values fit 31 bits.
 const STARTS: [i32; CHORDS] = CURVE.0;
-/// Decrease of that value along each chord.
+/// Decrease of `2^62 / m` along each chord.
 const FALLS: [i32; CHORDS] = CURVE.1;
 const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     let (mut starts, mut falls) = ([0; CHORDS], [0; CHORDS]);
