@@ -220,7 +220,7 @@ for index, event in pairs(desyncs) do
 end
 assert(desyncs[1] or desyncs[2], "the states differ")
 
--- While a player requests a pause, all wait and keep their seats. Afterwards play does not catch up.
+-- While a player requests a pause, all players wait and keep their seats. Afterwards, no missed ticks are played.
 both, deliver = connect(Game.new, { guess = 6 })
 local seen = {}
 local function run(from, to, read)

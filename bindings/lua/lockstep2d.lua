@@ -69,7 +69,7 @@ local function last_error()
 end
 
 --- Makes a function refuse Lua numbers as arguments of type `ls2d_fx`, because LuaJIT would convert them to raw
---- integers. 0 is 0 in both.
+--- integers. The number 0 is allowed, because its raw integer is 0, too.
 local function refuse_numbers(name, raw)
     local positions = fx_positions[name]
     return not positions and raw or function(...)

@@ -25,7 +25,7 @@ local BACK_MAX = 1
 --- taken from the random bytes.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
-    -- For `peer`, `key` and `secret`, which must not be guessable.
+    -- Random bytes for `peer`, `key` and `secret`, which must not be guessable.
     local random = options.random
     if not random then
         local file = io.open("/dev/urandom", "rb")
@@ -79,7 +79,8 @@ end
 
 --- Requests a pause, or withdraws the request. While any player requests a pause, updates play no ticks and do not call
 --- `read`; the program has to continue to call `update`. The other peers get the event `EVENT_PAUSE`. A request counts
---- while the player has a seat: not before it has caught up with a running match, and not from spectators.
+--- only while the player has a seat: spectators and players that are still catching up with a running match cannot
+--- pause the match.
 function Driver:pause(paused)
     if type(paused) ~= "boolean" then
         error("`paused` is true or false, and not " .. tostring(paused), 2)
@@ -93,11 +94,12 @@ end
 
 --- Whether this peer or another player requests a pause.
 function Driver:is_paused()
-    -- When all inputs are final, nobody waits for a player that quits during a pause.
+    -- Requests no longer count when all inputs are final: a player may have quit during a pause.
     return not self.finished and (self.pauses and self:may_have_seat() or next(self.pausing) ~= nil)
 end
 
--- A peer that joins a running match gets its seat after it has caught up, so its request must not stop it.
+-- A peer that joins a running match gets its seat after it has caught up. Until then, its own request for a pause does
+-- not count, because a paused peer could not catch up.
 function Driver:may_have_seat()
     return self:status() == ls.MATCH_CONNECTING or self:seat_count() > 0
 end
@@ -111,7 +113,7 @@ function Driver:close()
     end
 end
 
--- Checks a time before it reaches the match, whose clock cannot be put back.
+-- Checks a time before it is passed to the match, whose time never decreases.
 function Driver:check(now)
     if self.match == 0 then
         error("the driver is closed", 3)
@@ -268,7 +270,7 @@ function Driver:resume(tick, state)
     self.tick = tick
     self:forget(function() return true end)
     self:keep(tick)
-    -- The requests of a match that this peer took part in before do not count in this one.
+    -- Requests of an earlier match of this peer do not count in this match.
     self.pausing, self.finished = {}, false
     ls.match_pause(self.match, self.pauses and 1 or 0)
 end

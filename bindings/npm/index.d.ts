@@ -198,8 +198,8 @@ export interface ShapeOptions {
     category?: bigint | number;
     /** Bits of the categories that the shape collides with: all by default. */
     mask?: bigint | number;
-    /** Two shapes with the same positive group always collide, two shapes with the same negative group never. A signed
-     * integer of 32 bits: 0, no group, by default. */
+    /** Two shapes with the same positive group always collide, two shapes with the same negative group never do. A
+     * signed integer of 32 bits: 0, no group, by default. */
     group?: number;
     /** Direction in the body's frame in which other shapes pass through; `degrees(90)` is up. */
     oneWay?: Rotation;
@@ -1100,10 +1100,12 @@ export interface MatchOptions {
     /** Largest delay in ticks, at most 60: 20 by default. */
     delayMax?: number;
     /** Interval in ticks at which states are saved, from 1 to half of `history`. The default is that of a native `Peer`:
-     * 1 if `guess` is more than 0, otherwise 6 or, with a given `checkInterval`, the largest of its divisors up to 8. */
+     * 1 if `guess` is more than 0; otherwise the largest divisor of `checkInterval` up to 8, or 6 without
+     * `checkInterval`. */
     saveInterval?: number;
     /** Interval in ticks at which states are compared: a multiple of `saveInterval`. The default is that of a native
-     * `Peer`: the largest multiple up to 10, which is 6 in lockstep, or `saveInterval` if it is more than 10. */
+     * `Peer`: the largest multiple of `saveInterval` up to 10, or `saveInterval` if it is more than 10. Without both
+     * options, it is 6 in lockstep. */
     checkInterval?: number;
     /** Ticks that may be played beyond the last final tick, at least 16: 128 by default. */
     history?: number;
@@ -1206,7 +1208,7 @@ export interface MatchRequest {
     guessed: bigint;
 }
 /** One participant of a match. Inputs, states and packets are bytes. `now` is in milliseconds and must not decrease,
- * like `performance.now()`. `MatchDriver` fulfils the requests. Misuse is a `Lockstep2dError`. While the status is
+ * like `performance.now()`. `MatchDriver` fulfils the requests. Misuse throws a `Lockstep2dError`. While the status is
  * `connecting`, these functions throw `NOT_IN_MATCH`: `ticks`, `finalInputs`, `link`, `advance`, `reportHash`, `leave`,
  * and all functions below `leave`. */
 export class Match extends Handle {
@@ -1225,8 +1227,8 @@ export class Match extends Handle {
     isDue(now: number): boolean;
     /** Issues the inputs of your own seats in order, and plays a tick if possible. Returns whether the inputs were
      * issued; otherwise the same inputs may be passed again. Issued inputs count for one tick, so clear recorded key
-     * presses then. While the input delay grows, `isDue` remains true, and each further call takes the inputs of one
-     * more tick before the next tick is played. */
+     * presses when the inputs were issued. While the input delay grows, `isDue` remains true, and each further call
+     * takes the inputs of one more tick before the next tick is played. */
     advance(now: number, inputs: Uint8Array): boolean;
     nextRequest(): MatchRequest | undefined;
     /** Passes the hash for a request `checksum`. */
@@ -1251,8 +1253,8 @@ export class Match extends Handle {
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-     * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
-     * back: decide by a state of a confirmed tick (`ticks().confirmed`). */
+     * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
+     * withdrawn, so base it on the state of a confirmed tick (`ticks().confirmed`). */
     endAt(ticks: number): void;
     /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on: during a
      * pause, the program of each peer calls `update` and does not call `advance`. With a driver, use
@@ -1289,8 +1291,8 @@ export class MatchDriver<Saved = unknown> {
     readonly isPaused: boolean;
     /** Requests a pause, or withdraws the request. The other peers get the event `pause`. While any player requests a
      * pause, `update` plays no ticks and does not call `readInputs`; continue to call it, so that no player loses its
-     * seat. A request counts while the player has a seat: not before it has caught up with a running match, not from
-     * spectators, and no longer when it leaves. */
+     * seat. A request counts only while the player has a seat: spectators, players that are still catching up with a
+     * running match, and players that have left cannot pause the match. */
     pause(paused: boolean): void;
     /** Frees the saved states, and makes the driver unusable. The match remains. */
     dispose(): void;
@@ -1300,8 +1302,8 @@ export class MatchDriver<Saved = unknown> {
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to `now`, and plays the ticks that are due. Call it every few milliseconds. `readInputs`
      * returns the inputs of your own seats in order. Each result counts for one tick, so clear recorded key presses in
-     * it. While the input delay grows, an update calls `readInputs` several times. Returns the events. For an event
-     * `state`, the game has already decoded the state. After an error of the game, every further call throws that
+     * `readInputs`. While the input delay grows, an update calls `readInputs` several times. Returns the events. For an
+     * event `state`, the game has already decoded the state. After an error of the game, every further call throws that
      * error. An error of `readInputs` is thrown once. The next call continues the match, and also returns the events of
      * the call that threw the error. A time that is no number, or is more than a second less than an earlier time,
      * throws `VALUE` and changes nothing. */

@@ -53,7 +53,7 @@ records! {
 
 /// A handle that refers to nothing.
 pub(crate) const NO_ID: u64 = u64::MAX;
-/// Bits of a handle for the slot.
+/// Number of bits of a handle that hold the slot.
 const SLOT_BITS: u32 = 21;
 
 impl RawFx {

@@ -11,7 +11,7 @@ use lockstep2d::world::{Command, Snapshot, World};
 use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder, SandboxTimeline};
 use crate::status::{Failure, Outcome, Status};
 
-/// Bits of a handle for the slot. The generation starts at 1, so that no handle is 0.
+/// Number of bits of a handle that hold the slot. The generation starts at 1, so that no handle is 0.
 const SLOT_BITS: u32 = 20;
 const SLOTS_MAX: usize = 1 << SLOT_BITS;
 const GENERATION_MAX: u32 = (1 << (32 - SLOT_BITS)) - 1;
@@ -210,7 +210,7 @@ fn remove(handle: u32) -> Outcome<Shared> {
 
 /// Frees an object. If a call on another thread still uses the object, that call frees the memory at its end.
 pub(crate) fn free(handle: u32) -> Outcome {
-    // The object is dropped here, because `remove` has unlocked the table again.
+    // The object is dropped here, after `remove` has unlocked the table.
     remove(handle).map(drop)
 }
 

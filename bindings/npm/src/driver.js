@@ -20,7 +20,7 @@ export class MatchDriver {
     #sendError;
     // Inputs that were read but not issued. They are passed again, so that each key press counts exactly once.
     #unissued;
-    // The latest time.
+    // Largest time passed so far, in milliseconds.
     #latest = 0;
     #isDisposed = false;
     // Whether this peer requests a pause, and the other peers that request one.
@@ -52,7 +52,7 @@ export class MatchDriver {
     }
 
     get isPaused() {
-        // When all inputs are final, nobody waits for a player that closes its page during a pause.
+        // Requests no longer count when all inputs are final: a player may have closed its page during a pause.
         return !this.#isFinished && ((this.#pauses && this.#mayHaveSeat()) || this.#pausing.size > 0);
     }
 
@@ -96,7 +96,8 @@ export class MatchDriver {
         return this.#events.splice(0);
     }
 
-    // A peer that joins a running match gets its seat after it has caught up, so its request must not stop it.
+    // A peer that joins a running match gets its seat after it has caught up. Until then, its own request for a pause
+    // does not count, because a paused peer could not catch up.
     #mayHaveSeat() {
         return this.#match.status === "connecting" || this.#match.seats.length > 0;
     }
@@ -107,7 +108,7 @@ export class MatchDriver {
         }
     }
 
-    // Checks a time before it reaches the match, whose clock cannot be put back.
+    // Checks a time before it is passed to the match, whose time never decreases.
     #time(now) {
         micros(now, "the time");
         if (now < this.#latest - BACK_MAX) {
@@ -195,7 +196,7 @@ export class MatchDriver {
         this.#tick = tick;
         this.#forget(() => true);
         this.#keep(tick);
-        // The requests of a match that this peer took part in before do not count in this one.
+        // Requests of an earlier match of this peer do not count in this match.
         this.#pausing.clear();
         this.#match.pause(this.#pauses);
     }

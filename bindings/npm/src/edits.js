@@ -104,8 +104,8 @@ export class Edits extends Handle {
         return this.#allAdded(ids, count);
     }
 
-    /** Sets the frames of the joint definition at the address `at + 48`, from the coordinates of its anchor and
-     * axis. */
+    /** Sets the frames in the joint definition at the address `at + 48`. `numbers` are the coordinates of the anchor
+     * and the axis in the world. */
     place(at, numbers) {
         numbers.forEach((raw, index) => putRaw(at + 8 + 8 * index, raw));
         call("ls2d_joint_at", this.handle, at + 48, at + 8, at + 24, at + 48);

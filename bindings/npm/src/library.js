@@ -101,7 +101,8 @@ export function scratch(size) {
     return reserve(SMALL + size) + SMALL;
 }
 
-/** Address of 64 bytes that `scratch` never returns, for mathematics, which a getter of an argument may use. */
+/** Address of 64 bytes that `scratch` never returns. Mathematics uses these bytes, because a getter of an argument may
+ * compute while `scratch` is in use. */
 export const small = () => reserve(SMALL);
 
 /** Runs `convert`, which reads arguments. Throws if a getter of an argument has reused the scratch memory. */
@@ -302,7 +303,7 @@ export function takeBytes(handle) {
         call("ls2d_bytes_copy", handle, to + 16, size);
         return copy(to + 16, size);
     } finally {
-        // Also if there is no memory for a copy.
+        // Frees the object even if there is no memory for a copy.
         exports.ls2d_free(handle);
     }
 }

@@ -99,7 +99,7 @@ export class Relay {
         this.#watcher ??= setInterval(() => this.#watch(), WATCH);
         socket.onopen = () => socket.send(this.#secret);
         socket.onmessage = ({ data }) => socket === this.#socket && this.#frame(data);
-        // The package `ws` throws an error for which there is no listener.
+        // Without a listener, the package `ws` would throw the error.
         socket.onerror = () => {};
         socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
     }
@@ -123,8 +123,8 @@ export class Relay {
             now - this.#heard < CONNECT_MAX || this.#abandon();
         } else if (this.#asked !== undefined) {
             if (now - this.#asked >= LOST_AFTER) {
-                // After a suspension of the page, the answer may be queued behind this timer: waits for one more
-                // interval.
+                // After a suspension of the page, the answer may be queued behind this timer, so the member waits for
+                // one more interval.
                 this.#isOverdue ? this.#abandon() : (this.#isOverdue = true);
             }
         } else if (now - this.#heard >= ASK_AFTER) {
@@ -180,7 +180,7 @@ export class Relay {
         this.#retry();
     }
 
-    // A WebSocket that cannot be made, for example without memory, counts as a failed connection.
+    // A WebSocket that cannot be made, for example for lack of memory, counts as a failed connection.
     #retry() {
         this.#timer = setTimeout(() => {
             try {

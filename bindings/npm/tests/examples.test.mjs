@@ -34,7 +34,7 @@ test("a recording without the first ticks is broken", () => {
     assert.deepEqual([recording.broken, recording.ticks], [true, 0]);
 });
 
-/** A connection that refuses candidates without a description, and those that the test calls wrong. */
+/** A connection that refuses the candidate "wrong", and every candidate before the remote description is set. */
 class Connection {
     static all = [];
     connectionState = "new";

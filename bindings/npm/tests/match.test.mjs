@@ -316,7 +316,7 @@ test("while a player requests a pause, all wait and keep their seats", () => {
     assert.deepEqual(paused(), [true, true]);
     const before = ticks();
     guest.input = () => assert.fail("no inputs are read during a pause");
-    // Longer than the patience. Both players open their menus, and close them one after the other.
+    // The pause is longer than the patience. Both players open their menus, and close them one after the other.
     net.run(3000);
     guest.driver.pause(true);
     net.run(200);

@@ -1,4 +1,4 @@
-// Arithmetic in JavaScript has the results of the library, and floats are refused.
+// Arithmetic in JavaScript gives the same results as the library, and floats are refused.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { inspect } from "node:util";

@@ -26,7 +26,7 @@ pub struct DragPlugin;
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// Body to hold. `None` for the first dynamic body at the position, until one is held.
+    /// Body to hold. While it is `None`, the first dynamic body at the position will be held.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -41,8 +41,8 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is no
-    /// dynamic body, holds the first one that the pointer reaches.
+    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is none,
+    /// holds the first dynamic body that the pointer reaches later.
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }

@@ -35,8 +35,8 @@ impl SpawnBody {
     }
 }
 
-/// A joint for [`build_level`] between two entities with a [`SpawnBody`]. It may be on an entity of its own, or on one
-/// of the two.
+/// A joint for [`build_level`] between two entities with a [`SpawnBody`]. The component may be on an entity of its own,
+/// or on one of the two entities.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnJoint {
     /// Entity of body A.

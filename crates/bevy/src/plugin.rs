@@ -53,7 +53,7 @@ impl<G> LockstepPlugin<G> {
 pub struct LockstepSettings {
     /// Units of `Transform` per metre. A unit is a pixel in Bevy's default 2D camera.
     pub pixels_per_metre: f32,
-    /// Whether views are interpolated between the last two ticks. They are then up to a tick late.
+    /// Whether views are interpolated between the last two ticks. Interpolated views are up to a tick late.
     pub interpolate: bool,
     /// Time in which the displacement of a view halves after a rollback has moved its body. Zero moves the view at
     /// once.

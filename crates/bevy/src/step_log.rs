@@ -21,8 +21,8 @@ pub(crate) struct Stamp {
     ticks: u64,
 }
 
-/// An event. It is announced if its [`PredictedEvent`](crate::PredictedEvent) was sent, here with the tick of that
-/// message. A later rollback may have moved the event to another tick.
+/// An event. `announced` is the tick of its [`PredictedEvent`](crate::PredictedEvent), if this message was sent. A
+/// later rollback may have moved the event to another tick.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     event: LoggedEvent,
@@ -176,7 +176,8 @@ impl StepLog {
 
     fn miss(&mut self, bodies: impl IntoIterator<Item = (BodyId, Shown)>) {
         for (body, shown) in bodies {
-            // The view still shows the body of the last frame. The first identity noted for an id is that of this body.
+            // The view still shows the body of the last frame. The first identity recorded for an id is that of this
+            // body.
             self.missing.entry(body).or_insert(shown);
         }
     }
@@ -255,7 +256,7 @@ impl StepLog {
         (self.shown, self.shown_again) = (None, None);
     }
 
-    /// Notes that the views show the current tick. Captures the poses of a loaded state.
+    /// Records that the views show the current tick. Captures the poses of a loaded state.
     pub(crate) fn show(&mut self, world: Option<&World>) {
         if self.is_after_stale {
             self.refresh(world);

@@ -149,7 +149,7 @@ fn follow(
 }
 
 /// Whether the game has teleported a body in the last tick: its origin moved by more than `limit` metres, and by more
-/// than twice its speed times the duration of a tick. The larger speed of before and after the tick counts.
+/// than twice its speed times the duration of a tick. The speed is the larger one of those before and after the tick.
 fn is_jump(
     world: Option<&World>,
     log: &StepLog,

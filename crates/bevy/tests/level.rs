@@ -32,7 +32,7 @@ fn sandbox_app() -> App {
 #[derive(Component, PartialEq, Debug)]
 struct Label(&'static str);
 
-/// The ground, a bar that hangs from the origin by a hinge with the ground, and a ball. Returns their entities.
+/// The ground, a bar that is hinged to the ground at the origin, and a ball. Returns their entities.
 fn spawn_level(world: &mut World) -> Result<[Entity; 3], WorldError> {
     let solid = |x, y| Polygon::rectangle(x, y).map(ShapeDef::new);
     let ground = BodyDef::fixed().position((fx!(0), fx!(-5)));

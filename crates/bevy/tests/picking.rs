@@ -96,7 +96,7 @@ fn a_click_finds_the_body_below_the_pointer() {
     screen.point_at(20.0, 15.0);
     screen.click();
     assert_eq!(screen.clicked(), [ball]);
-    // Within the box around the ball, but outside of the ball.
+    // This point is within the bounding box of the ball, but outside of the ball.
     screen.point_at(24.5, 19.5);
     screen.click();
     assert_eq!(screen.clicked(), []);

@@ -185,8 +185,8 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
     Ok(())
 }
 
-/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. To open the path instead would write a
-/// regular file from its start.
+/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. Opening the path instead would
+/// overwrite a regular file from its start.
 #[cfg(unix)]
 fn standard_output(path: &Path) -> Option<File> {
     use std::os::fd::AsFd;
@@ -223,7 +223,7 @@ fn lock(temporary: &Path, name: &Path, inputs: &[&Path], readers: Readers) -> Re
         if !is_at(&file, temporary) {
             continue;
         }
-        // A writer that was killed while it published the file has left it under both names.
+        // A writer that was killed while it published the file may have left the file under both names.
         let is_input = inputs.iter().any(|input| is_at(&file, input));
         if is_input || !is_published(&file, name).map_err(&failed)? {
             return Ok(file);

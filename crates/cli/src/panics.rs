@@ -53,7 +53,7 @@ thread_local! {
     static TICKS: Cell<Option<u64>> = const { Cell::new(None) };
 }
 
-/// Notes the number of played ticks, for the error of [`guard`].
+/// Records the number of played ticks, for the error of [`guard`].
 pub(crate) fn played(ticks: u64) {
     TICKS.set(Some(ticks));
 }

@@ -9,7 +9,7 @@ pub use matchbox_socket;
 use matchbox_socket::{ChannelConfig, MessageLoopFuture, PeerId, WebRtcSocket, WebRtcSocketBuilder};
 use uuid::Uuid;
 
-/// Data channel of the packets.
+/// Index of the data channel that carries the packets.
 const CHANNEL: usize = 0;
 
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.
@@ -84,8 +84,8 @@ impl Matchbox {
         &self.others
     }
 
-    /// Whether the room is lost, because the signalling server was not reached or has ended. To return, this peer has
-    /// to enter the room again.
+    /// Whether the connection to the signalling server has failed or ended. To return, this peer has to enter the room
+    /// again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.is_closed

@@ -93,7 +93,7 @@ fn packets_reach_the_member_they_are_for_and_name_their_sender() {
     });
     assert_eq!(found, (addresses[0], b"to b".to_vec()));
     assert_eq!(c.receive(), None, "a packet for b");
-    // Packets from another room and packets to an address without a member arrive nowhere.
+    // Packets from another room and packets to an address without a member are dropped.
     stranger.send(b"from outside", &addresses[2]);
     a.send(b"nowhere", &Address::nowhere());
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).expect("a short address"));

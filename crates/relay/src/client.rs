@@ -18,7 +18,7 @@ use tungstenite::{Message, WebSocket, client::client_with_config};
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
 use crate::silence::{Due, Silence};
 
-/// Longest attempt to connect to an address. Also the longest read or write during the handshake.
+/// Timeout of an attempt to connect to an address, and of each read or write during the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
 /// First pause before connecting again. The pause doubles after each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
@@ -292,8 +292,8 @@ impl Transport for Relay {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Ok(to) = <[u8; ADDRESS_BYTES]>::try_from(to.bytes()) else { return };
         let Some((socket, _)) = self.connection() else { return };
-        // An error of the connection is left to `receive`, which first reads the frames that have arrived. One of them
-        // may tell that a newer connection has replaced this one.
+        // An error is ignored here: `receive` detects it after reading the frames that have arrived. One of these
+        // frames may be a close frame, sent because a newer connection has replaced this one.
         let _ = socket.send(Message::binary(frame(to, packet)));
     }
 

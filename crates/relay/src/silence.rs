@@ -1,4 +1,4 @@
-//! [`Silence`]: detects a connection that no longer carries anything, such as after a change of networks.
+//! [`Silence`]: detects a dead connection, for example after the device has changed networks.
 #![expect(clippy::disallowed_types, reason = "a connection is observed in real time")]
 
 use core::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// Time without a frame from the relay after which a ping is sent.
 const PING_AFTER: Duration = Duration::from_secs(5);
-/// Time after a ping without an answer at which the connection counts as lost.
+/// Time after an unanswered ping at which the connection counts as lost.
 const LOST_AFTER: Duration = Duration::from_secs(10);
 
 /// The time at which the last frame arrived on a connection.

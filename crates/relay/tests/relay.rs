@@ -94,7 +94,7 @@ fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
     let mut found = [receive(&mut b), receive(&mut b)];
     found.sort_by_key(|(_, bytes)| bytes.clone());
     assert_eq!(found, [(*c.own(), b"also".to_vec()), (*a.own(), b"to b".to_vec())]);
-    // Datagrams from another room and datagrams to an address without a member arrive nowhere.
+    // Datagrams from another room and datagrams to an address without a member are dropped.
     stranger.send(b"from outside", &to);
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).unwrap());
     a.send(b"last", &to);
@@ -113,7 +113,7 @@ fn a_member_that_connects_again_has_its_address() {
     let mut a = server.enter("room", 1);
     let old = server.enter("room", 2);
     let address = *old.own();
-    // The old connection is not closed first, as after a change of networks.
+    // The old connection stays open, as after a change of networks.
     let mut new = server.enter("room", 2);
     assert_eq!(*new.own(), address);
     until_others(&mut a, std::slice::from_ref(&address));
@@ -149,7 +149,7 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
     assert_eq!(found, (*a.own(), b"again".to_vec()));
     // The member that did not return is no longer listed.
     until("the members", || {
-        // Reads, so that the lists are updated. The datagram may have been sent several times.
+        // Reading updates the lists of members. The results do not matter: further copies of the datagram may arrive.
         let _ = (a.receive(), b.receive());
         (a.others() == [to] && b.others() == [*a.own()]).then_some(())
     });

@@ -7,7 +7,7 @@ const SCALE_MIN: f64 = 1e-8;
 /// Largest scale, in pixels per metre: a micrometre per pixel.
 const SCALE_MAX: f64 = 1e6;
 
-/// Distance in pixels between the visible area and the area to which lines are clipped, because strokes have a width.
+/// Distance in pixels by which clipped lines extend beyond the visible area, because strokes have a width.
 const MARGIN: f64 = 16.0;
 
 /// Visible part of a world, without rotation: y points up in the world and down on the screen.

@@ -1,7 +1,7 @@
 //! [`glyph`]: the glyphs of a bitmap font.
 //!
 //! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. Some other characters are replaced by
-//! similar ones. The rest is drawn as a hollow box.
+//! similar ones. All others are drawn as a hollow box.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 

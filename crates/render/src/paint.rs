@@ -12,11 +12,11 @@ use crate::list::DrawList;
 
 /// Length of a direction mark at full size, in pixels.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// Mean half size of shapes, in pixels. Below it, marks shrink so that they stay smaller than a typical body.
+/// Mean half size of shapes, in pixels, below which marks shrink so that they stay smaller than a typical body.
 const LARGE: f32 = 24.0;
 /// Smallest scale of marks.
 const SCALE_MIN: f32 = 1.0 / 6.0;
-/// Mean half size of shapes, in pixels. Below it, labels are left out, because they would overlap.
+/// Mean half size of shapes, in pixels, below which labels are left out, because they would overlap.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
 /// Corners of a point mark, which looks like a disc.
@@ -34,7 +34,7 @@ const OCTAGON: [[f32; 2]; 8] = {
     ]
 };
 
-/// Radius, in pixels. Below it, a mark has only every other corner.
+/// Radius, in pixels, below which a point mark has only every other corner.
 const TINY: f32 = 1.5;
 
 /// Settings for painting a picture.

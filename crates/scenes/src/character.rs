@@ -1,4 +1,4 @@
-//! A character that moves by queries, followed by a kinematic body.
+//! A character that is moved by queries of the world. A kinematic body follows it.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -72,7 +72,7 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6 ticks, a body is spawned. Every 6 ticks, another one is despawned if there are at least 40 dynamic bodies.
+/// Every 6 ticks, a body is spawned. Every 6 ticks, another body is despawned if there are at least 40 dynamic bodies.
 /// Every 50 ticks, the first dynamic body is kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);

@@ -74,7 +74,8 @@ pub(super) const SLOPE: Scene = Scene::new(
             let ramp = rectangle(fx!(100), fx!(0.5))?.friction(fx!(1));
             scene.spawn(BodyDef::fixed().angle(angle), &[ramp])?;
             for (along, friction) in [(fx!(60), fx!(0.36)), (fx!(80), fx!(0.09))] {
-                // The friction between two shapes is the geometric mean: sqrt(1 x 0.36) = 0.6 and sqrt(1 x 0.09) = 0.3.
+                // The friction of a contact is the geometric mean of the two coefficients: sqrt(1 x 0.36) = 0.6 and
+                // sqrt(1 x 0.09) = 0.3.
                 let square = rectangle(fx!(0.5), fx!(0.5))?.friction(friction);
                 let up = Vec2::new(-sin, cos);
                 let place = Vec2::new(cos, sin).scale(along) + up;

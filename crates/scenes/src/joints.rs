@@ -40,7 +40,7 @@ pub(super) const LONG_ARM: Scene = Scene::new(
     |_| rod(fx!(4.618802153517)),
 );
 
-/// A rod of 1 m and 1 kg at 20 rad/s. It is pinned `arm` metres from its centre.
+/// A rod of 1 m and 1 kg that rotates at 20 rad/s. It is pinned `arm` metres from its centre.
 fn rod(arm: Fx) -> lockstep2d::lockstep::SandboxSetup {
     build(weightless(), |scene| {
         let pivot = scene.spawn(BodyDef::fixed(), &[])?;

@@ -42,7 +42,7 @@ pub(super) const SPINNER: Scene = Scene::new(
 )
 .golden(20);
 
-/// Fills the ring with rows of 92 bodies, from the bottom up. Capsules, discs and squares take turns.
+/// Fills the ring with rows of 92 bodies, from the bottom up. Capsules, discs and squares alternate.
 fn fill_ring(scene: &mut Builder) -> Result<(), WorldError> {
     let (a, b) = (Vec2::new(fx!(-0.25), fx!(0)), Vec2::new(fx!(0.25), fx!(0)));
     let capsule = Geometry::capsule(a, b, fx!(0.25))?;

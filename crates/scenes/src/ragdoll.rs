@@ -39,7 +39,7 @@ enum Extra {
     Damped,
     /// Foot: has an additional shape with little friction, which collides only with the ground.
     Foot,
-    /// Bone with linear damping. The angle of its hinge is 0 at a bend of an eighth of a turn.
+    /// Bone with linear damping. The angle of its hinge is 0 when the hinge is bent by an eighth of a turn.
     Bent,
 }
 

@@ -15,7 +15,7 @@ use lockstep2d::world::{BodyPose, Command, Config};
 /// Number of columns that exist at a time. The ragdolls of a column are above each other, on all floors.
 const COLUMNS: u64 = 40;
 const FLOORS: u32 = 5;
-/// Number of ragdolls that fall on a floor in a column.
+/// Number of ragdolls of a column that fall on each floor.
 const GROUP: u32 = 5;
 /// Number of ticks between two new columns.
 const INTERVAL: u64 = 8;

@@ -90,7 +90,7 @@ fn buckets(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint(joint.colliding()).map(|_| ())
 }
 
-/// Adds bodies of several densities above the pools, and leaves in the wind.
+/// Adds bodies of several densities above the pools, and light leaves that the wind moves.
 fn floats(scene: &mut Builder) -> Result<(), WorldError> {
     let end = Vec2::new(fx!(0.4), fx!(0));
     let forms = [

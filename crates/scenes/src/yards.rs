@@ -73,7 +73,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
 
 /// Five points on a circle. Each is a turn divided by the golden ratio after the previous point.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
-    // A turn divided by the golden ratio is pi (sqrt(5) - 1).
+    // A turn divided by the golden ratio is pi (sqrt(5) - 1) rad.
     let step = Angle::from_radians(fx!(3.883222077451));
     let mut angle = Angle::ZERO;
     let mut points = Vec::new();

@@ -43,8 +43,8 @@ impl Content {
         first.or_else(|| self.scenes.first().map(|scene| scene.name.as_str()))
     }
 
-    /// Opens a replay, a divergence report or a snapshot, which differ in their first bytes. A report is shown as its
-    /// replay.
+    /// Opens a replay, a divergence report or a snapshot. The first bytes of the file identify its kind. A report is
+    /// shown as its replay.
     ///
     /// The source borrows the bytes, which stay allocated until the program ends.
     pub(crate) fn open(&self, name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {

@@ -77,7 +77,7 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files), false));
 
-// Mouse events of a drag go to the canvas, also beside it and when the button is released there.
+// Mouse events of a drag go to the canvas, even if the pointer leaves the canvas or the button is released outside.
 element("glcanvas").addEventListener("pointerdown", (event) => event.target.setPointerCapture(event.pointerId));
 
 // Opens the file or scene of the URL. Called after the viewer's first report, because the viewer accepts no files

@@ -97,7 +97,7 @@ async function scrubsAndMatches(browser) {
         const near = (state) => Math.abs(state.tick - part * ticks) <= 1 + ticks / (width - 24);
         state = await browser.until(STATE, near, `scrubbed to ${part} of ${ticks}`);
     }
-    // The button is released below the canvas. The pointer then scrubs no more.
+    // The button is released below the canvas. After that, moves of the pointer no longer seek.
     await browser.mouse("mouseMoved", place(0.4)[0], height + 12);
     await browser.mouse("mouseReleased", place(0.4)[0], height + 12);
     await browser.mouse("mouseMoved", ...place(0.75));

@@ -1,11 +1,11 @@
-//! The worker of a game that ends its process on some inputs.
+//! The worker of a game that aborts its process on the input [`FATAL`].
 
 use std::process::ExitCode;
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 
-/// Input that ends the process.
+/// Input that aborts the process.
 const FATAL: u8 = 13;
 
 struct Fragile(u64);

@@ -15,7 +15,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::{results, submit, work};
 
-/// Stack size of a thread in bytes. This is the usual size for a main thread, which a game may rely on.
+/// Stack size of a thread in bytes. Games may rely on this size, because it is usual for a main thread.
 const STACK_BYTES: usize = 8 << 20;
 
 /// Exit code for an error.

@@ -34,7 +34,7 @@ impl Bucket {
     }
 
     /// Names of the replays in the folder `name`, or in the whole bucket if `name` is empty. If there are no replays
-    /// and `name` is an object, `name` itself.
+    /// and `name` is an object, returns `name` itself.
     pub(crate) async fn replays(&self, name: &str) -> Result<Names<'_>, WorkerError> {
         let path = self.path(name)?;
         let failed = WorkerError::bucket(&self.url);

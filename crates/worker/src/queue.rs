@@ -23,8 +23,8 @@ const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 /// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Time without requests after which the server deletes the consumer of a command `results`. A pager that stops the
-/// output also stops the requests.
+/// Time without requests after which the server deletes the consumer of a command `results`. While a pager pauses the
+/// output, the command sends no requests.
 const RESULTS_KEPT: Duration = Duration::from_secs(10 * 60);
 
 /// Pauses between attempts. Together they last about a minute, in which a server can restart.
@@ -147,7 +147,7 @@ impl Queue {
             let sent = self.context.send_publish(results_subject(&self.name, key), message).await?;
             match sent.await {
                 Ok(_) => Ok(Added::New),
-                // Another worker was faster. Or an earlier attempt succeeded, but its answer was lost.
+                // Another worker has already added the result, or an earlier attempt succeeded and its answer was lost.
                 Err(error) if error.kind() == PublishErrorKind::WrongLastSequence => Ok(Added::Known),
                 Err(error) => Err(error),
             }
@@ -155,7 +155,7 @@ impl Queue {
         retry("add a result", publish).await
     }
 
-    /// All results from the first on.
+    /// A consumer of all results, starting with the first.
     pub(crate) async fn results(&self) -> Result<PullConsumer, WorkerError> {
         let inactive_threshold = RESULTS_KEPT;
         let config = pull::Config { ack_policy: AckPolicy::None, inactive_threshold, ..Default::default() };

@@ -25,7 +25,7 @@ const GRACE: Duration = Duration::from_secs(1);
 pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
     let mut shutdown = Shutdown::listen(GRACE)?;
     let (connection, mut signal) = (connection.clone(), shutdown.clone());
-    // A task of its own, because printing blocks while the reader of the output takes no lines.
+    // Printing has its own task, because it blocks while the reader of the output takes no lines.
     let printing = tokio::spawn(async move {
         tokio::select! {
             printed = print(&connection, rules, follow) => printed,
@@ -46,8 +46,8 @@ async fn print(connection: &Connection, rules: RulesId, follow: bool) -> Result<
         let most = if follow { BATCH } else { BATCH.min(usize::try_from(left).unwrap_or(BATCH)) };
         let batch = consumer.fetch().max_messages(most).expires(EXPIRES).messages();
         let batch = batch.await.map_err(WorkerError::nats("read the results"))?;
-        // Collects the whole batch first. If a pager slowed down the reading of a batch, the client would drop messages
-        // of it.
+        // Collects the whole batch first. If a pager slowed down the reading, the client would drop messages of the
+        // batch.
         let received: Vec<_> = batch.collect().await;
         let count = tokio::task::block_in_place(|| print_batch(received))?;
         left = left.saturating_sub(count);

@@ -40,7 +40,8 @@ impl Shutdown {
 
     pub(crate) async fn reached(&mut self, phase: Phase) {
         if self.0.wait_for(|now| *now >= phase).await.is_err() {
-            // The task of the signals, which has the sender, ends only with the process.
+            // The sender is gone. The task that owns it ends only with the process, so this function waits for that
+            // end.
             std::future::pending::<()>().await;
         }
     }

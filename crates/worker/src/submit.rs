@@ -121,7 +121,7 @@ async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), Wo
         return Ok(());
     }
     let bytes = std::fs::read(path).map_err(WorkerError::read(path))?;
-    // The store would keep other bytes under this digest for ever.
+    // Otherwise the store would keep wrong bytes under this digest.
     if blake3::hash(&bytes).to_hex().as_str() != blake3 {
         return Err(WorkerError::read(path)(std::io::Error::other("the file has changed in the meantime")));
     }

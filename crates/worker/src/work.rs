@@ -28,8 +28,8 @@ use crate::shutdown::{Phase, Shutdown};
 /// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the timeout of the client.
-/// After that timeout, a lost request would look like an empty queue.
+/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the timeout of the NATS
+/// client, because the client reports a lost request like an empty queue.
 const LOST: Duration = Duration::from_secs(4);
 
 /// A worker ends when all requests have failed for this time.
@@ -144,7 +144,7 @@ async fn next(jobs: &PullConsumer) -> Result<Option<Message>, WorkerError> {
 struct Outage(Option<Instant>);
 
 impl Outage {
-    /// Adds a request. Returns whether requests have failed for [`OUTAGE_MAX`].
+    /// Records the outcome of a request. Returns whether requests have failed for [`OUTAGE_MAX`].
     fn exceeds(&mut self, has_failed: bool, now: Instant) -> bool {
         if !has_failed {
             self.0 = None;

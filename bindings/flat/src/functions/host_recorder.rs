@@ -16,7 +16,7 @@ use crate::table::{self, with};
 /// Rules (name, version), players, tick rate, bytes of an input, hash of the first state, the game's own setup.
 pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
 
-/// Stands for the game that the host simulates, because a [`Recorder`] needs a [`Game`].
+/// Placeholder for the game that the host simulates, because a [`Recorder`] needs a [`Game`].
 pub(super) struct HostGame {
     players: u32,
     tick_rate: u32,

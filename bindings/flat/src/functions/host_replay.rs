@@ -59,7 +59,7 @@ pub(crate) struct HostReplay {
     pub(super) tick: u64,
     /// Tick of the last comparison; `None` before the first one and after loading a state.
     pub(super) compared: Option<u64>,
-    /// Number of checkpoints before the first one that the host's state hashes have not matched yet.
+    /// Number of consecutive checkpoints, counted from the first, that the host's state hashes have matched.
     equal: usize,
     pub(super) failed: Option<Verdict>,
     /// Claims that the host has added.

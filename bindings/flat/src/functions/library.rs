@@ -22,7 +22,8 @@ api! {
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
     /// Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
-    /// too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure.
+    /// too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure, and
+    /// leaves the text unchanged.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();

@@ -197,9 +197,9 @@ api! {
 
     /// Issues the inputs of this peer's seats, in order of the seats, and plays a tick if possible: the next requests
     /// then contain `LS2D_REQUEST_ADVANCE`. Writes 1 to `issued` if the inputs were issued; otherwise the same inputs
-    /// may be passed again. Issued inputs count for one tick, so clear recorded key presses then. While the input delay
-    /// grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of one more tick before the next
-    /// tick is played. For a peer without seats, `size` is 0.
+    /// may be passed again. Issued inputs count for one tick, so clear recorded key presses when the inputs were
+    /// issued. While the input delay grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of
+    /// one more tick before the next tick is played. For a peer without seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         issued.check_if_wanted()?;
@@ -361,8 +361,8 @@ api! {
     }
 
     /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
-    /// majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
-    /// back: decide by a state of a confirmed tick (`ls2d_match_ticks`).
+    /// majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
+    /// withdrawn, so base it on the state of a confirmed tick (`ls2d_match_ticks`).
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         tell(handle, |session| session.end_at(ticks))
     }

@@ -70,9 +70,9 @@ records! {
         kind: u32,
         /// `LS2D_JOINT_` flags.
         flags: u32,
-        /// Teeth of A's wheel of a gear.
+        /// Number of teeth of a gear's wheel on body A.
         teeth_a: i32,
-        /// Teeth of B's wheel of a gear.
+        /// Number of teeth of a gear's wheel on body B.
         teeth_b: i32,
         /// Angle of the joint's frame on A, in the frame of body A.
         angle_a: RawAngle,

@@ -160,11 +160,13 @@ records! {
         delay_min: u32,
         /// Largest delay of inputs in ticks.
         delay_max: u32,
-        /// Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1 with
-        /// guessed inputs, otherwise 6 or, with a given `check_interval`, the largest of its divisors up to 8.
+        /// Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1
+        /// with guessed inputs; in lockstep, the largest divisor of `check_interval` up to 8, or 6 if `check_interval`
+        /// is 0.
         save_interval: u32,
         /// Interval in ticks at which states are compared: a multiple of `save_interval`. 0, the default, stands for
-        /// the interval of a Rust `Peer`: the largest multiple up to 10, or `save_interval` if it is more than 10.
+        /// the interval of a Rust `Peer`: the largest multiple of `save_interval` up to 10, or `save_interval` if it is
+        /// more than 10.
         check_interval: u32,
         /// Number of ticks that may be played beyond the last final tick.
         history: u32,

@@ -107,8 +107,8 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Two shapes with the same positive group always collide, two shapes with the same negative group never. 0 is
-        /// no group.
+        /// Two shapes with the same positive group always collide, two shapes with the same negative group never do. 0
+        /// is no group.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,

@@ -1,2 +1,2 @@
-// The default worker format of Vite cannot split code.
+// The default worker format of Vite does not support code splitting.
 export default { base: "./", build: { target: "es2022", outDir: "dist-vite" }, worker: { format: "es" } };

@@ -1,6 +1,7 @@
 // A member that is alone in a room, so that only the relay sends it frames: node silent.mjs URL
 //
-// The member keeps its connection for more than 15 seconds, after which it would replace a connection without answers.
+// The member keeps its connection for more than 15 seconds. If the relay did not answer, the member would reconnect
+// then.
 import assert from "node:assert/strict";
 import { Relay } from "../../src/index.js";
 

@@ -21,7 +21,7 @@ use crate::observed::Observed;
 /// Times of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameTime {
-    /// Game time since the last frame, which can be paused and scaled.
+    /// Game time since the last frame. Game time can be paused and scaled.
     pub(crate) delta: Duration,
     /// Real time since the last frame.
     pub(crate) real_delta: Duration,

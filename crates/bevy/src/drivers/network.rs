@@ -60,7 +60,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     ) -> Result<(), LockstepError> {
         let first = self.peer.tick();
         self.peer.update(time.real_elapsed)?;
-        // `Lockstep::pause` pauses the session of that moment. A session that began later has to be paused here.
+        // `Lockstep::pause` pauses only a session that exists at that time. A session that began later is paused here.
         if let Some(session) = self.peer.session_mut().filter(|_| is_paused) {
             session.pause(true);
         }
@@ -70,8 +70,8 @@ impl<G: LockstepGame> MatchDriver<G> {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // `advance` returns whether it has issued the inputs. A peer without an open seat plays ticks without
-            // issuing inputs. Inputs that were not issued are kept for the next tick.
+            // `advance` returns whether it has issued the inputs. A peer without a seat plays ticks without issuing
+            // inputs. Inputs that were not issued are kept for the next tick.
             if self.peer.advance(&inputs.next(own as usize))? {
                 inputs.used();
             }
@@ -105,7 +105,8 @@ impl<G: LockstepGame> MatchDriver<G> {
         self.without_events(|peer| peer.replay_so_far())
     }
 
-    /// Makes a file. For it, the peer plays ticks again whose events are already in the log.
+    /// Makes a file while the log is suspended. For this file, the peer plays ticks again whose events are already in
+    /// the log.
     fn without_events(
         &mut self,
         make: impl FnOnce(&mut Peer<Observed<G>, AnyTransport>) -> Result<Vec<u8>, PeerError>,

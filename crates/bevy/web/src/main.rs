@@ -1,8 +1,8 @@
 //! `versus` over WebRTC, for web pages and native programs. Arrow keys.
 //!
 //! A page without a room in its address opens a match in a new room. Pages with `#ROOM` join it. Natively:
-//! `bevy_lockstep2d_web [ROOM [SERVER]]`. All need a signalling server of matchbox. `cargo run --example bot` starts
-//! such a server and an opponent.
+//! `bevy_lockstep2d_web [ROOM [SERVER]]`. Pages and programs need a signalling server of matchbox. `cargo run --example
+//! bot` starts such a server and an opponent.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]

@@ -1,4 +1,4 @@
-//! The native program, with arguments and the state of the match in its window title.
+//! The native program: reads its arguments, and shows the state of the match in the title of its window.
 
 use bevy::prelude::*;
 use lockstep2d::peer::PeerIdentity;

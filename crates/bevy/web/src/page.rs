@@ -1,4 +1,5 @@
-//! A web page with the address `?server=ws://HOST:PORT#ROOM`, and the state in its element `status`.
+//! The web page: reads its address (`?server=ws://HOST:PORT#ROOM`), and shows the state of the match in its element
+//! `status`.
 
 use bevy::prelude::*;
 use lockstep2d::peer::PeerIdentity;

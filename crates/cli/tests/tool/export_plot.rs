@@ -126,7 +126,7 @@ fn curves_have_the_extremes_of_what_they_show() {
     }
 }
 
-/// The error of the integrator after a time t is `m g² t h / 2`, with the time step h.
+/// The integrator's error in the energy after a time t is `m g² t h / 2`, with the time step h.
 #[test]
 fn energy_in_free_fall_is_constant() {
     let svg = plot("free_fall", &[]);

@@ -188,7 +188,7 @@ fn a_replay_of_another_game_or_a_damaged_one_is_not_signed() {
     assert_eq!((exit, &lines[0]["signature"]), (Exit::Unsigned, &json!("malformed")));
     assert!(lines[0]["signature_error"].as_str().unwrap().contains("line 1: "), "{}", lines[0]);
 
-    // The message quotes nothing of a key file.
+    // The error message contains no part of the key file.
     folder.write("secret", b"lockstep2d secret key 1 12345\n");
     let signed = run(&["sign", &folder.path("good.replay"), "--key", &folder.path("secret")]);
     assert!(signed.exit == Exit::Trouble && !signed.err.contains("12345"), "{}", signed.err);

@@ -20,14 +20,14 @@ use super::queue::{Next, Queue};
 use super::rooms::Full;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
-/// Longest handshake. Also the longest wait for the first frame after the handshake, and for the answer to a close
-/// frame.
+/// Timeout of the handshake, of the first frame after the handshake, and of the answer to a close frame.
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;
-/// Number of pings in the idle time.
+/// Number of pings that a silent member receives within the idle time.
 const PINGS: u32 = 3;
-/// Maximum number of bytes that wait to be sent besides one message: answers to pings of a client that reads nothing.
+/// Largest size of the write buffer in bytes, in addition to one message. Answers to pings fill it if the client reads
+/// nothing.
 const ANSWERS_MAX: usize = 64 * 1024;
 /// Upper bound for the bytes of a member in the list of members.
 const MEMBER_BYTES: usize = 32;

@@ -13,11 +13,11 @@ pub struct Limits {
     pub members: usize,
     /// Largest datagram in bytes. A larger datagram closes the connection.
     pub datagram_bytes: usize,
-    /// Maximum memory in bytes of the datagrams that wait for a member, with 80 bytes of overhead for each. If there is
-    /// more, the oldest datagrams are dropped.
+    /// Maximum memory in bytes of the datagrams queued for a member, including 80 bytes of overhead for each. Beyond
+    /// it, the oldest datagrams are dropped.
     pub queue_bytes: usize,
     /// Maximum number of bytes per second from a member, with bursts of one second. Datagrams above this rate are
-    /// dropped. A rate eight times as high closes the connection, also in fragments of messages and in pings.
+    /// dropped. A rate eight times as high closes the connection; fragments and pings count, too.
     pub bytes_per_second: u32,
     /// Maximum number of datagrams per second from a member, with bursts of one second. Datagrams above this rate are
     /// dropped. A rate eight times as high closes the connection.

@@ -20,7 +20,7 @@ pub(super) enum Pace {
 /// Largest header of a frame from a client in bytes.
 const FRAME_HEADER: u64 = 14;
 
-/// A token bucket, which holds at most the units of one second.
+/// A token bucket. Its capacity is the number of units allowed in one second.
 #[derive(Clone, Debug)]
 pub(super) struct Bucket {
     per_second: u64,
@@ -41,7 +41,7 @@ impl Bucket {
         Bucket::new((u64::from(bytes_per_second) + headers) * EXCESS)
     }
 
-    /// Takes units at the time `now`. Takes none and returns false if the bucket holds fewer.
+    /// Takes `units` at the time `now`. If the bucket holds fewer, takes none and returns false.
     pub(super) fn take(&mut self, now: Duration, units: usize) -> bool {
         let micros = u64::try_from(now.saturating_sub(self.last).as_micros()).unwrap_or(u64::MAX);
         self.last = self.last.max(now);

@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::Notify;
 
 /// Memory of a frame besides its contents: its entry in a deque that may be half empty, and the overhead of its
-/// allocation. If it were not counted, a flood of empty datagrams would take many times the limit.
+/// allocation. If this overhead were not counted, a flood of empty datagrams would take many times the limit.
 const FRAME_OVERHEAD: usize = 80;
 
 /// Frames that wait for a member. Their total memory is limited.

@@ -5,8 +5,8 @@
 
 use tiny_skia::{Path, PathBuilder};
 
-/// Distance from the image at which shapes are clipped, in pixels. The border of a clipped shape is invisible for
-/// strokes up to this width.
+/// Distance from the image at which shapes are clipped, in pixels. Strokes up to this width along the clipping border
+/// are invisible.
 const MARGIN: f32 = 2048.0;
 
 pub(super) struct Area {

@@ -32,7 +32,7 @@ impl Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// The button went down at this position. If the pointer moves further than [`CLICK`], it pans.
+    /// The button went down at this position. If the pointer moves further than [`CLICK`], the view pans.
     Pressing([f32; 2]),
     Panning,
     /// The pointer moves along the timeline.

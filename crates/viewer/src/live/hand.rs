@@ -26,7 +26,7 @@ const DAMPING_RATIO: Fx = fx!(1);
 /// Largest force of the drag spring per kilogram of the body, in m/s².
 const STRENGTH: i64 = 1000;
 /// Friction torque against the rotation of a dragged body, per kilogram of mass and metre of radius of gyration, in
-/// m/s². The torque is that of a quarter of the body's weight at this radius.
+/// m/s². This is the torque of a quarter of the body's weight at the radius of gyration.
 const GRIP: Fx = fx!(2.5);
 
 #[derive(Debug)]

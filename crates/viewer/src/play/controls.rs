@@ -111,7 +111,7 @@ impl<I: Default> Controls<I> {
         input
     }
 
-    /// Forgets the keys that went down since the last tick. Keys that are still down count on.
+    /// Forgets the keys that went down since the last tick. Keys that are still down keep their effect.
     pub(super) fn forget_taps(&mut self) {
         self.tapped.clear();
     }

@@ -14,7 +14,7 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Largest number of ticks in a frame of a peer that catches up. The window stays responsive.
+/// Largest number of ticks in a frame of a peer that catches up, so that the window stays responsive.
 const TICKS_PER_FRAME: u32 = 64;
 /// Longest time that closing waits until the match is left.
 const LEAVE_TIME: Duration = Duration::from_secs(1);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Maximum number of saves. It is limited because adding a save may scan all of them.
+/// Maximum number of saves. The number is limited, because adding a save may scan all of them.
 const FRAMES_MAX: usize = 2048;
 /// Number of ticks added to the distance of a save from the current tick (ten seconds at 60 Hz). Because of it, saves
 /// are about equally dense within this distance.

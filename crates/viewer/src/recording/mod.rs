@@ -168,7 +168,7 @@ impl<G: Game> Recording<G> {
         self.game.load(end);
         self.tick = self.ticks();
         let file = recorder.finish(&self.game).map_err(RecordingError::Record);
-        // Goes back also after an error: `end` is for a game that is at an earlier tick.
+        // Goes back even after an error, because `end` must be `None` while the game is at the last recorded tick.
         self.seek(here)?;
         file
     }

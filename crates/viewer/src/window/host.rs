@@ -123,7 +123,7 @@ fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
 /// Writes all bytes to a new file at a path. After an error, no part of the file is left.
 fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
     let written = file.write_all(bytes).and_then(|()| file.sync_all());
-    // Windows removes no open file.
+    // Windows cannot remove an open file.
     drop(file);
     written.inspect_err(|_| remove(path))
 }

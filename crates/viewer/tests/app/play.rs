@@ -64,7 +64,7 @@ impl Game for Count {
     }
 }
 
-/// More than a tick may cost by the default limits.
+/// Work units above the default limit for a tick.
 const HEAVY: u64 = 1 << 40;
 
 fn unlimited() -> Limits {
@@ -211,7 +211,7 @@ fn a_peer_catches_up_in_many_frames() {
     .unwrap();
     let [mut host, mut spectator] = [host(1, 1, &network), spectator].map(shown);
     advance([&mut host, &mut spectator], 1000);
-    // The spectator's window stands still.
+    // The spectator is not updated, like a window that is suspended.
     advance([&mut host], 5000);
     let (mut most, mut waited) = (0, 0);
     while spectator.tick() + 30 < host.tick() && waited < 300 {
@@ -223,7 +223,7 @@ fn a_peer_catches_up_in_many_frames() {
     assert!(waited < 300 && (30..=64).contains(&most), "up to {most} ticks in each of {waited} frames");
 }
 
-/// Plays as the host until the guest has left, for a time in which a silent guest keeps its seat.
+/// Plays as the host until the guest has left, for at most the time in which a silent guest keeps its seat.
 fn play_until_left(host: &mut CountPeer, from: Duration) -> bool {
     (1..=300).any(|step| {
         host.update(from + step * Duration::from_millis(5)).unwrap();

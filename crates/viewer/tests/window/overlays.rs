@@ -46,7 +46,7 @@ fn each_overlay_is_what_the_draw_list_says() {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // A pixel that changes by more than 24 with one rasteriser may change less with the other. With the other, a
+        // A pixel that changes by more than 24 in one rasteriser may change less in the other rasteriser, where a
         // change by more than 4 is enough.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());

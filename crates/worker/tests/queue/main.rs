@@ -222,7 +222,7 @@ fn the_same_bytes_have_one_result_and_are_not_simulated_again() {
     assert_eq!(queued, [true, false]);
     assert_eq!(submitted[0]["blake3"], submitted[1]["blake3"]);
 
-    // Other limits give other keys. But the second worker adds no result, because the job of these bytes has left the
+    // The second worker has other limits, which give another key. It adds no result, because the job has left the
     // queue.
     for (arguments, count) in [(&["--max-ticks", "30"][..], 1), (&["--max-ticks", "29"], 1)] {
         let mut child = program.work(arguments);

@@ -1,4 +1,4 @@
-//! Files in the object store: deleted ones, and ones whose content is missing, so that reading them hangs.
+//! Files in the object store: deleted files, and files whose content is missing, so that reading them hangs.
 
 use std::process::Command;
 use std::thread;
@@ -42,7 +42,7 @@ fn a_deleted_object_is_stored_again() {
     assert_eq!(result["verdict"], "match", "{result}");
 }
 
-/// The pipe gives other bytes when it is opened again, as a file does that is still being written.
+/// The pipe returns other bytes when it is opened again. A file that is still being written does this, too.
 #[test]
 fn a_file_that_changes_while_it_is_submitted_is_an_error() {
     let folder = Folder::new("changes");
@@ -53,7 +53,7 @@ fn a_file_that_changes_while_it_is_submitted_is_an_error() {
     let writer = thread::spawn(move || {
         for number in 1..3 {
             std::fs::write(&pipe, replay(number, 1, 3)).unwrap();
-            // The reader closes the pipe before it is written again.
+            // Gives the reader time to close the pipe before it is written again.
             thread::sleep(Duration::from_secs(1));
         }
     });

@@ -20,7 +20,7 @@ const WIDTH: u32 = 640;
 const GIF_RATE_MAX: u32 = 50;
 /// Maximum number of ticks that are sampled to find a window. The last tick is sampled in addition.
 const SAMPLES: u64 = 100;
-/// One in this many sampled ticks gives a sample picture for the palette.
+/// Number of sampled ticks for each sample picture. The palette is made from the sample pictures.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Plays the replay twice. The first pass finds the window and the colours, and fails before anything is written.

@@ -13,7 +13,7 @@ const AHEAD_MAX: u64 = 1024;
 /// Longest wait for a result before [`Sink::pause`] is called.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// Stack size of a thread in bytes. This is the usual size for a main thread, which a game may rely on.
+/// Stack size of a thread in bytes. Games may rely on this size, because it is usual for a main thread.
 const STACK_BYTES: usize = 8 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

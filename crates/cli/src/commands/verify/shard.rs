@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 /// One of `count` parts, numbered from 1.
 ///
-/// The part of a file depends only on a hash of its path below the argument. Processes may list a changing folder at
-/// different times. Even then, exactly one process takes each file that all of them find. A file keeps its part when
+/// The part of a file depends only on a hash of its path relative to the argument. Processes may list a changing folder
+/// at different times. Even then, exactly one process takes each file that all of them find. A file keeps its part when
 /// other files are added. The parts differ in size: with about 1000 files per part, the standard deviation is about 30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
@@ -78,7 +78,7 @@ mod tests {
                 assert_eq!(takers.len(), 1, "{path} of {count}");
                 files[takers[0].index as usize - 1] += 1;
             }
-            // Each part has its fair number of files, within ten standard deviations.
+            // Each part has the expected number of files, within ten standard deviations.
             let (fair, spread) = (2000 / count, 10 * (2000 / count).isqrt().max(1));
             let parts = &files[..count as usize];
             assert!(parts.iter().all(|files| files.abs_diff(fair) <= spread), "{count}: {parts:?}");

@@ -5,7 +5,7 @@ use serde::ser::{self, Serialize, Serializer};
 use serde_json::{Error, Map, Value, value};
 
 /// Converts a value like [`serde_json::to_value`], with a decimal beside the bits of each fixed-point number. An integer
-/// of more than 64 bits becomes text. A key that is no text, number or truth value becomes the text of its JSON.
+/// of more than 64 bits becomes text. A map key that is not a string, number or boolean becomes a string with its JSON.
 pub(super) fn json<T: Serialize + ?Sized>(value: &T) -> Result<Value, Error> {
     let mut json = value.serialize(ToJson)?;
     if let Value::Object(entries) = &mut json
@@ -25,7 +25,7 @@ fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, Error> {
     })
 }
 
-/// The value. The content of an enum variant becomes an object with the name of the variant as its key.
+/// The value itself, or for an enum variant an object with the name of the variant as its key.
 fn named(variant: Option<&str>, value: Value) -> Value {
     match variant {
         Some(name) => Map::from_iter([(name.into(), value)]).into(),

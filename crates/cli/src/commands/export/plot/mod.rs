@@ -23,7 +23,7 @@ use axis::Unit;
 use chart::{Chart, Panel};
 use curve::Curve;
 
-/// Colours of curves. The colours of the energy panel differ also for people with red-green colour blindness.
+/// Colours of curves. People with red-green colour blindness can distinguish the colours of the energy panel.
 const BLUE: &str = "#1f5f9e";
 const ORANGE: &str = "#d95f0e";
 const INK: &str = "#333333";
