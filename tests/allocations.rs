@@ -68,7 +68,7 @@ fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
     counting::count() - before
 }
 
-/// The initial world of a scene, stepped without commands.
+/// The initial world of a scene. The tests step it without the commands of the scene.
 fn world_of(name: &str) -> World {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game =
@@ -130,7 +130,7 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
             let per_body = (counting::bytes() - bytes) / world.body_count();
             if tick >= 8 {
                 assert_eq!(stepped - before, 0, "{name}, tick {tick}");
-                // Debug builds pack sleeping contacts again, for comparison.
+                // Debug builds allocate more: they pack sleeping contacts a second time, for comparison.
                 let is_lean = cfg!(debug_assertions) || per_body < 5;
                 assert!(is_lean, "{per_body} bytes per body of {name}, tick {tick}");
             }

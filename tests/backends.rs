@@ -91,7 +91,8 @@ fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
-/// In a game the number of threads changes too: a world uses threads only in ticks that become shorter with threads.
+/// In a game the number of threads changes between ticks: a world uses threads only in ticks that become shorter with
+/// threads.
 #[test]
 #[cfg(feature = "parallel")]
 fn the_number_of_threads_may_change_between_ticks() {
@@ -111,7 +112,7 @@ fn the_number_of_threads_may_change_between_ticks() {
 }
 
 /// Fast rods, wheels with heavy hubs, boxes, bouncing balls and a chain: bodies that exceed the speed limit, and slower
-/// ones in the same batches.
+/// bodies in the same batches.
 fn faulty_world(seed: u64) -> World {
     let mut world = World::default();
     let mut rng = Rng::new(seed);
@@ -153,7 +154,7 @@ fn faulty_world(seed: u64) -> World {
     world
 }
 
-/// Which contacts and hinges share a batch depends on the backend and the threads.
+/// The grouping of contacts and hinges into batches depends on the backend and on the number of threads.
 #[test]
 fn faults_are_counted_equally_on_every_backend_and_number_of_threads() {
     sweep::for_each((0..8).collect(), |seed| {

@@ -89,7 +89,7 @@ fn the_character_on_a_spring_leg_gets_about() {
         trace.push(game.world().body(ids[0]).expect("there").position());
     }
     assert_eq!(game.refused(), 0);
-    // The centre of mass is 0.9 m above the ground.
+    // The centre of mass is 0.9 m above the ground, and 0.1 m above the origin of the body.
     let rest = trace[25];
     assert!((rest.y - fx!(0.8)).abs() < fx!(0.005), "at rest above the floor: {rest:?}");
     let jump = trace[30..60].iter().map(|place| place.y).max().expect("some");
@@ -302,7 +302,8 @@ fn a_lift_that_comes_up_takes_the_character_along() {
     }
 }
 
-/// The next move carries the rider by the platform's whole displacement, but a jump takes the platform's velocity.
+/// The next move carries the rider by the whole displacement of the platform since the last move. A jump starts with
+/// the velocity of the platform.
 #[test]
 fn a_rider_that_was_not_moved_for_some_ticks_keeps_the_speed_of_the_platform() {
     for (waits, teleport) in [(0, None), (1, None), (29, None), (0, Some(fx!(-20)))] {

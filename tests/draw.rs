@@ -361,7 +361,7 @@ fn check_text(text: &str) {
     assert!(!text.chars().any(|c| c < ' ' && c != '\n'), "{text:?}");
 }
 
-/// The longest bar that numbers represent is 2 000 000 km long.
+/// The longest scale bar whose length fits in an `Fx` is 2 000 000 km long.
 #[test]
 fn the_label_of_a_bar_is_its_length() {
     let bars = [fx!(0.004), fx!(0.3), fx!(70), Fx::MAX].map(|most| Bar::up_to(|length| length <= most));

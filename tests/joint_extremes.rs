@@ -9,7 +9,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::World;
 
-/// Small, ordinary or maximal.
+/// A number that is small, ordinary or the maximum.
 fn size(rng: &mut Rng, most: Fx) -> Fx {
     match rng.below(4) {
         0 => rng.range(Fx::ZERO, fx!(0.001)),

@@ -154,7 +154,7 @@ fn files_of_different_folders_form_no_circle() {
     assert!(wrong.is_empty(), "files that depend on each other:\n{}", wrong.join("\n"));
 }
 
-/// A canary of the folder rules.
+/// Planted violations of the folder rules are found.
 #[test]
 fn wrong_folders_and_circles_are_found() {
     let rules: Rules = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
@@ -248,7 +248,7 @@ fn circles(sources: &Crate, module: &str) -> Vec<String> {
     circles.filter(spans).map(named).collect()
 }
 
-/// A canary of the layers, with every form of a path.
+/// Planted violations of the layers are found, with every form of a path.
 #[test]
 fn wrong_directions_are_found() {
     let found = |place: &[&str], code: &str| {

@@ -32,7 +32,7 @@ pub struct Script {
     pub setup: Vec<Event>,
     /// Commands before each step.
     pub ticks: Vec<Vec<Event>>,
-    /// Number of first steps that are not timed.
+    /// Number of initial steps that are not timed.
     pub untimed: usize,
 }
 

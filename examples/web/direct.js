@@ -132,8 +132,8 @@ export class Direct {
         }
     }
 
-    // Adds a candidate to the connection that it belongs to, or keeps it until the connection has a description. A
-    // candidate that the connection refuses, such as one of an earlier connection, ends nothing.
+    // Adds a candidate to the connection that it belongs to, or keeps it until the connection has a description. If the
+    // connection refuses a candidate, for example one of an earlier connection, the connection continues.
     async #reachable(from, candidate) {
         const connection = this.#links.get(nameOf(from))?.connection;
         if (connection?.remoteDescription) {

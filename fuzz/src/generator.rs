@@ -182,7 +182,7 @@ impl Generator {
             28 | 29 => Command::Sleep { body },
             30 if source.one_in(4) => {
                 let area = source.one_in(4).then(|| shapes::area(source));
-                // Most shapes are solid, and the world refuses an area for them.
+                // Most shapes are solid, and the world refuses to give an area to a solid shape.
                 Command::SetArea { shape: self.shape(source, world), area }
             }
             30 | 31 => {

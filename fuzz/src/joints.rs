@@ -1,4 +1,4 @@
-//! Generates joints of every kind, mostly moderate, sometimes beyond what is allowed.
+//! Generates joints of every kind, mostly with moderate parameters, sometimes with parameters beyond their limits.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;

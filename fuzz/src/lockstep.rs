@@ -166,7 +166,7 @@ impl Seen {
         self.hits += (events.hits.len() + events.joints.len()) as u64;
     }
 
-    /// Whether the run has 60 ticks or more and ten touching contacts at one time.
+    /// Whether the run has 60 ticks or more, and ten or more touching contacts at one time.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.ticks >= 60 && self.most_touching >= 10
@@ -282,7 +282,7 @@ struct Total {
     touching: u64,
     ticks: u64,
     ordinary: u64,
-    /// Runs with faults, of wild and of ordinary scenes.
+    /// Number of runs with faults: index 0 counts scenes that are not ordinary, index 1 ordinary scenes.
     faulty: [u64; 2],
 }
 

@@ -238,8 +238,8 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
         [(a, b), (b, a)].into_iter().flat_map(|(a, b)| a.points.iter().map(|point| b.square_distance(point)));
     let apart = apart.min().unwrap_or_else(Exact::zero);
     match deepest {
-        // Crossing segments have a positive `apart`, the distance of end points. Collinear segments that are apart have
-        // a `deepest` of zero.
+        // For crossing segments, `apart` is the distance of an end point and so positive, but `deepest` is negative.
+        // For collinear segments that are apart, `deepest` is zero.
         Some(deepest) if !deepest.is_positive() && (deepest.is_negative() || apart.is_zero()) => deepest,
         _ => apart,
     }

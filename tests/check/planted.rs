@@ -154,7 +154,8 @@ fn a_replay_contains_the_tick_that_exceeds_a_limit() {
     }
 }
 
-/// The runs that measure how often a long log fails leave the budget for the minimisation.
+/// A long log is played again several times to measure how often it fails. These runs leave enough of the work budget
+/// for the minimisation.
 #[test]
 fn an_early_fault_of_a_long_log_is_minimised() {
     let mut inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));

@@ -1,4 +1,4 @@
-//! The planted fault of `examples/fuzzing`: the iteration order of a `HashMap`.
+//! The check finds the planted fault of `examples/fuzzing`: the random iteration order of a `HashMap`.
 
 use lockstep2d::check::{CheckOptions, Variant, check, check_replay, random_inputs};
 use lockstep2d::math::Rng;

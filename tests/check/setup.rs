@@ -1,4 +1,5 @@
-//! A setup that its encoding does not represent in full: verifiers play another game.
+//! The check finds a setup whose encoding leaves out a field. A verifier of a replay with this setup would play another
+//! game.
 
 use lockstep2d::check::{CheckOptions, Fault, Variant, check};
 use lockstep2d::hash::StateHash;

@@ -48,7 +48,8 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // After the stop of such a body, a world with caches would keep its contacts a tick longer than one without caches.
+    // If the world accepted a body that counts as resting and has a velocity: after the body stops, a world with caches
+    // would keep the body's contacts a tick longer than a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
@@ -65,7 +66,8 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
-    // In a world without caches, such a body would become active only after the tick in which it reaches its target.
+    // If the world accepted a body that counts as resting and has a target: in a world without caches, the body would
+    // become active only after the tick in which it reaches the target.
     let mut world = weightless();
     let body = world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.move_to(body, (fx!(4.25), fx!(0)), Angle::ZERO).unwrap();
@@ -86,7 +88,8 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
-    // Such a box would overlap `Aabb::NOWHERE`, the marker of an unknown box. When bodies wake, a pair would be missed.
+    // A box that covers all numbers overlaps `Aabb::NOWHERE`, the marker of an unknown box. When bodies wake, a pair
+    // would be missed.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let body = world.spawn(&BodyDef::dynamic().position((fx!(3.25), fx!(7.5))), &[ball]).unwrap();

@@ -246,7 +246,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // Each start visits all joints of the body.
+    // When a kinematic body starts to move, the world visits all joints of the body.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
@@ -320,8 +320,8 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // The material of two shapes is cached under their slots. Contacts of sleeping bodies are not among the active ones
-    // that a removal searches, and a new shape reuses the slot before the next tick.
+    // The material of two shapes is cached under their slots. A removal searches the active contacts, but not those of
+    // sleeping bodies. A new shape reuses the slot before the next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();

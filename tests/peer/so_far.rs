@@ -1,4 +1,4 @@
-//! The replay of a match that goes on.
+//! The replay of a match that has not ended.
 
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::PeerOptions;
@@ -6,7 +6,8 @@ use lockstep2d::replay::{Limits, Verdict, verify};
 
 use super::{Pushers, Table, modes};
 
-/// The game is often at a later tick, also in lockstep. The table takes finished bytes of the replay in every update.
+/// The game is often ahead of the last final tick, also in lockstep. `Table::play` takes the finished bytes of the
+/// replay after every update; `replay_so_far` still has all ticks.
 #[test]
 fn a_replay_so_far_ends_at_the_last_final_tick() {
     for options in modes() {

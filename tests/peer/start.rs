@@ -5,7 +5,7 @@ use lockstep2d::session::Status;
 
 use super::{Table, identity};
 
-/// Both players know the latency since the second one joined, so the input delay suits it from the first tick.
+/// Both players know the latency since the second one joined, so the input delay fits the latency from the first tick.
 #[test]
 fn lockstep_plays_at_full_speed_from_the_start() {
     let options = PeerOptions { start_with: 2, ..PeerOptions::lockstep() };

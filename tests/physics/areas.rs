@@ -250,7 +250,7 @@ fn a_tunnel_through_a_planet_is_an_oscillator() {
     close(at(&world, ball).x, fx!(-8), fx!(0.01));
 }
 
-/// Buoyancy acts against the field of all areas.
+/// Buoyancy acts against the accelerations of all areas, not only against gravity.
 #[test]
 fn a_planet_may_have_a_sea() {
     let mut world = world(fx!(0));

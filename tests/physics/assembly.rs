@@ -167,7 +167,8 @@ impl Case {
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
-                        // The first link downwards joins indices that differ by the number of bodies in a row.
+                        // In a grid, the first link that leads downwards joins two indices whose difference is the
+                        // number of bodies in a row.
                         let w = links.iter().find(|(a, b)| b - a > 1).map_or(2, |(a, b)| b - a);
                         let w = if links.contains(&(0, 2)) && w == 2 { 2 } else { w };
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))

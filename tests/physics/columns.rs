@@ -18,7 +18,7 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Simulates until all bodies sleep, for at most a minute. No body may leave its place by more than `sideways` or sink
+/// Simulates until all bodies sleep, for at most a minute. No body may move to a side by more than `sideways`, or sink
 /// by more than `sink`.
 fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     let places: Vec<_> = world.bodies().map(|(id, body)| (id, body.position())).collect();
@@ -57,7 +57,8 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
-/// The outlines touch only because of their radii, so that each tick chooses the reference face anew.
+/// Only the rounded borders touch, not the polygons inside them. In this case each tick chooses the reference face
+/// anew.
 #[test]
 fn a_column_of_a_hundred_rounded_boxes_stands() {
     let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();

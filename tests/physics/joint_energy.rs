@@ -14,7 +14,7 @@ use crate::assembly::{Case, Mix, SHAPES, Shape, Start};
 use crate::energy;
 use crate::sweep;
 
-/// Duration of 20 s.
+/// 20 s at 60 ticks a second.
 const TICKS: u32 = 1200;
 
 /// Exceptions, which gain 2 to 39 %. Hard pulls at long arms turn a body too far within a sub-step: `h^2 F r / I` is
@@ -217,7 +217,8 @@ fn weightless(tick_rate: u32) -> World {
     World::new(Config { gravity: Vec2::ZERO, tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// One limb is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times.
+/// One limb is hit. If the welds were solved one by one, the energy of a star of four planks would rise to 90 000 times
+/// its initial value.
 #[test]
 fn a_star_of_welds_that_is_hit_gains_no_energy() {
     for limbs in 3..=8 {

@@ -131,7 +131,8 @@ fn a_stiff_joint_comes_to_rest() {
     assert!(fx!(0.01) < angle + fx!(0.05) && angle < fx!(0.05), "{angle} rad");
 }
 
-/// `Fx::MAX` means no limit. As a torque in N m, it would accelerate a disc of 31 kt by only 0.014 rad/s².
+/// A largest torque of `Fx::MAX` means no limit. A torque of `Fx::MAX` N m would accelerate a disc of 31 kt by only
+/// 0.014 rad/s².
 #[test]
 fn motors_without_a_limit_move_any_mass_at_once() {
     let turning: [JointKind; 3] = [

@@ -143,7 +143,7 @@ fn a_point_on_an_arm_swings_faster() {
     }
 }
 
-/// As in [`a_point_on_an_arm_swings_faster`], for suspensions and distance joints.
+/// Suspensions and distance joints obey the formula of [`a_point_on_an_arm_swings_faster`].
 #[test]
 fn a_spring_along_a_line_swings_faster_on_an_arm() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {

@@ -36,8 +36,8 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// In Box2D, the fall has an overlap of 5.0 mm. The overlap of a single fall is partly chance. It is at most 6 mm in 15
-/// of 16 falls, and 10 mm in the other.
+/// In Box2D, the fall has an overlap of 5.0 mm. The overlap of a single fall is partly chance. Here it is at most 6 mm
+/// in 15 of 16 falls, and at most 10 mm in the remaining fall.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);

@@ -221,7 +221,8 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// If the friction held up the higher ball, it would also turn the lower one, because nothing else bears its torque.
+/// If the friction held up the higher ball, it would also turn the lower ball, because nothing else could bear the
+/// torque of the friction.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -247,8 +248,8 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
     }
 }
 
-/// The friction holds a weight of 10 N if its largest force suffices. Otherwise the weight falls with the remaining
-/// acceleration.
+/// The friction holds a weight of 10 N if the largest force of the friction suffices. Otherwise the weight falls with
+/// the remaining acceleration.
 #[test]
 fn friction_holds_a_falling_body_only_if_it_suffices() {
     for (force, falls) in [(fx!(9.5), true), (fx!(10.5), false)] {

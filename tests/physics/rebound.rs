@@ -254,8 +254,8 @@ fn a_bumper_returns_more_than_the_speed() {
     }
 }
 
-/// Here, `e` times the closing speed is larger than the largest speed. The change of velocity is clamped and does not
-/// wrap around. The clamp counts as a fault.
+/// Here, `e` times the closing speed is 1200 m/s, which is outside of the range of the type `Speed`. The change of
+/// velocity is clamped and does not wrap around. The clamp counts as a fault.
 #[test]
 fn bumpers_at_the_speed_limit_part() {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");

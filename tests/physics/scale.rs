@@ -49,7 +49,7 @@ impl Floor {
     }
 }
 
-/// Sinking of the top of 8 boxes in 10 s, in units of a box. The gaps at the start are 1 % of a box.
+/// Sinking of the top of 8 boxes in 10 s, in units of the size of a box. The gaps at the start are 1 % of a box.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();
@@ -59,8 +59,8 @@ fn sink(config: Config, size: Fx) -> Fx {
 }
 
 /// Checks a column of 20 boxes with offsets of 1 %, and a pyramid of 10 rows. Small boxes sway more often in the half
-/// second until they sleep. At the end, a column of boxes of 1 cm leans by 0.11 of a box, and one of boxes of 1 m by
-/// 0.002.
+/// second until they sleep. At the end, a column of boxes of 1 cm leans by 0.11 of the size of a box, and a column of
+/// boxes of 1 m by 0.002 of it.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);

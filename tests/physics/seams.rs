@@ -87,7 +87,7 @@ fn everything_slides_over_flush_blocks() {
     });
 }
 
-/// The filter of ghost collisions keeps real ones: of two thin plates, and of a box with a step of 2 cm.
+/// The ghost-collision filter does not remove real collisions: of two thin plates, and of a box with a step of 2 cm.
 #[test]
 fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();

@@ -94,7 +94,7 @@ fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     }
 }
 
-/// The spins of both wheels together keep their angular momentum.
+/// The sum of the angular momenta of the two wheels is constant.
 #[test]
 fn resistance_between_two_wheels_is_equal_and_opposite() {
     let mut world =

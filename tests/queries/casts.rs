@@ -327,8 +327,8 @@ fn a_cast_from_within_a_shape_starts_inside_with_and_without_a_turn() {
     }
 }
 
-/// A one-sided chain forms a roof with a vertical or sloping lip at one end. It is open from below, also for queries
-/// that start on the right of the line through the lip.
+/// A one-sided chain forms a roof with a vertical or sloping lip at one end. The roof is open from below, also for
+/// queries that start on the right of the line through the lip.
 #[test]
 fn queries_from_below_a_convex_corner_pass_through_the_roof() {
     for points in [

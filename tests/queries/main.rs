@@ -172,7 +172,8 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
     }
 }
 
-/// Expects all shapes that overlap, in slot order. Shapes within the tolerance of touching are not checked.
+/// Checks that a query has found all overlapping shapes, in slot order. Shapes within the tolerance of touching are not
+/// checked.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],

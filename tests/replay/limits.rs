@@ -18,7 +18,7 @@ fn verdict(file: &[u8], limits: &Limits) -> Verdict {
     verify::<Counter>(file, limits)
 }
 
-/// A limit equal to the needed value suffices, and one less does not.
+/// Checks that a limit equal to the needed value suffices, and that a limit smaller by one does not.
 fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Limits, u64)) {
     let mut limits = Limits::default();
     set(&mut limits, needed);

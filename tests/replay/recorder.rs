@@ -1,5 +1,5 @@
-//! A recording returns its bytes while the game runs, and steps the game with the inputs that its replay decodes to. It
-//! writes nothing that a verifier would refuse.
+//! A recording returns its bytes while the game runs. It steps the game with the inputs as a reader of the replay
+//! decodes them, and writes nothing that a verifier would refuse.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, InputError, RulesId, SetupError};

@@ -1,5 +1,5 @@
-//! A seek leads to the state that a playback without seeks has. In a part that has been played, a seek simulates at
-//! most two intervals, within a memory budget.
+//! A seek leads to the state that a playback without seeks has at the same tick. In a part that has been played, a seek
+//! simulates at most two intervals, within a memory budget.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::codec;
@@ -196,7 +196,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // One tick costs 102 units, and every other tick costs three. Repeated ticks must not count again.
+    // One tick costs 102 units, and each of the other ticks costs three. Repeated ticks must not count again.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {

@@ -1,5 +1,5 @@
-//! Bisection finds tick, stage, body and field of a random bit flip, and simulates fewer ticks than three
-//! verifications.
+//! Bisection finds the tick, phase, body and field of a random bit flip. It simulates fewer ticks than three
+//! verifications of the replay.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -264,7 +264,8 @@ fn bodies_that_do_not_move_are_not_searched() {
     assert!(LOADS.get() < 10, "loaded {} states", LOADS.get());
 }
 
-/// A flip that the world refuses changes nothing, so the next flip needs no load. The number of tried flips is limited.
+/// A flip that the world refuses changes nothing, so the search tries the next flip without loading the state again.
+/// The number of tried flips is limited.
 #[test]
 fn the_loads_of_a_search_are_limited() {
     let report = misstated(|_| StateHash(7));

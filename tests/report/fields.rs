@@ -1,4 +1,4 @@
-//! States that differ in any bit differ in a field.
+//! If two states differ in any bit, the comparison of their fields finds a difference.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Field, differences, fields};

@@ -71,7 +71,8 @@ fn block(world: &mut World, centre: Vec2<Fx>, half: Vec2<Fx>) {
     world.spawn(&BodyDef::fixed().position(centre), &[shape]).expect("valid");
 }
 
-/// A wall between a character's position and its geometry, which is to the side, does not hinder a step.
+/// The geometry of this character is 2 m beside its position. A wall between position and geometry does not hinder a
+/// step.
 #[test]
 fn a_character_beside_its_position_climbs_steps() {
     let mut world = world(60);

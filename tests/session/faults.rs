@@ -6,7 +6,8 @@ use super::{storm, sweep};
 
 /// Largest number of matches to play with a fault.
 const MATCHES: u64 = 300;
-/// Like [`MATCHES`], in the long run, for a fault that breaks an invariant in about one of a thousand storms.
+/// Largest number of matches to play in the long run with a fault that breaks an invariant in about one match of a
+/// thousand.
 const MATCHES_RARE: u64 = 2000;
 
 /// Each fault, the first seed, and the difference between seeds. With a difference of 10, all matches are of one

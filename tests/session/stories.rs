@@ -321,7 +321,8 @@ fn a_peer_that_was_away_for_too_long_knows_it() {
     assert!(sim.peers[0].events.is_empty() && sim.failure.is_none());
 }
 
-/// While the spectator pauses, it stores the inputs of the ticks that it has not played. The others forget them.
+/// While the spectator pauses, it stores the inputs of the ticks that it has not played. The other peers forget these
+/// inputs.
 #[test]
 fn a_spectator_that_pauses_keeps_the_inputs() {
     let mut sim = players(2, link(30 * MS), |config| config.log_ticks = 128);

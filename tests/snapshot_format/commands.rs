@@ -34,7 +34,7 @@ impl Written {
         self
     }
 
-    /// Appends world quantities, given in halves.
+    /// Appends numbers of the type `fx`, given in units of 1/2.
     fn fx(mut self, halves: &[i64]) -> Self {
         for half in halves {
             self.0.extend((half << 31).to_le_bytes());
@@ -49,7 +49,7 @@ impl Written {
         self
     }
 
-    /// Appends `Some` of world quantities, given in halves.
+    /// Appends `Some` of numbers of the type `fx`, given in units of 1/2.
     fn some(self, halves: &[i64]) -> Self {
         self.u8(1).fx(halves)
     }

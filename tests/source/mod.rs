@@ -45,8 +45,8 @@ fn collect(folder: &Path, extensions: &[&str], paths: &mut Vec<PathBuf>) {
     }
 }
 
-/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes its first quote, and a raw
-/// string one token with its text. Comments produce no tokens.
+/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token, which is only
+/// its first quote. A raw string becomes one token with its text. Comments produce no tokens.
 pub(crate) fn tokens(code: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let (mut rest, mut line) = (code, 1);

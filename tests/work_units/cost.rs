@@ -12,7 +12,7 @@ const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 /// Shortest time that is judged. In a shorter time, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Processor time of this thread. Where the system does not report it, the time of the clock.
+/// Processor time of this thread, or elapsed time where the system does not report it.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
@@ -97,7 +97,7 @@ fn costs(file: &[u8]) -> [Cost; 2] {
 pub(super) type Case<'a> = (SandboxSetup, u64, Script<'a>);
 
 /// Returns the name of a case that is too expensive. The size is doubled until a tick takes long enough. A case without
-/// such a tick is wrong, because it would show nothing.
+/// such a tick counts as an error, because it would test nothing.
 pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Case<'a>) -> Option<String> {
     for doubled in 0..=DOUBLED_MAX {
         let size = size << doubled;

@@ -1,4 +1,4 @@
-//! Sensors notice whatever crosses them within a tick, in the order of the crossings.
+//! Sensors report every shape that crosses them within a tick, in the order of the crossings.
 //!
 //! The oracle moves a [`Probe`] with the visitor's shape along its path, while the sensors stand still. It samples the
 //! overlap, and bisects the times of its changes.

@@ -262,7 +262,7 @@ fn a_hit_of_a_spinning_ball_has_the_speed_along_the_normal() {
     }
 }
 
-/// Boxes on a slope move alike if the contact events of one are switched in every tick.
+/// Three boxes on a slope move equally, whether or not the contact events of one box are switched in every tick.
 #[test]
 fn switching_events_changes_no_motion() {
     let play = |switches: bool, floor_reports: bool| {

@@ -1,4 +1,4 @@
-//! Distant bodies change no bit: a group of bodies moves the same by itself and with another group a kilometre away.
+//! Distant bodies change no bit: a group of bodies moves equally with and without another group a kilometre away.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

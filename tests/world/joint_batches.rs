@@ -1,4 +1,4 @@
-//! Joint batches that are kept between ticks give results equal to those of new ones.
+//! Joint batches that are kept between ticks give results equal to those of new batches.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, MassSource};
 use lockstep2d::fx;

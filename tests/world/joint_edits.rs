@@ -202,7 +202,7 @@ fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     assert_eq!(without, net(2), "all joints");
 }
 
-/// A disabled joint pulls nothing, and its bodies collide and sleep.
+/// A disabled joint exerts no force, and its bodies collide and sleep.
 #[test]
 fn a_disabled_joint_is_as_if_absent() {
     let build = |joined: bool| {

@@ -135,8 +135,8 @@ fn locks_may_change_while_it_moves() {
     assert!(world.body(id).expect("there").angle() != Angle::ZERO, "expected the body to turn again");
 }
 
-/// The reported torque of a rope about its anchor is zero, even if one of its bodies cannot turn. A motor between such
-/// bodies reports its torque.
+/// The reported torque of a rope about its anchor is zero, even if one of its bodies cannot turn. A motor between a
+/// body that cannot turn and a body that can reports its torque.
 #[test]
 fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
     let mut world = World::default();

@@ -226,7 +226,8 @@ fn filters_and_switches_hide_from_sensors() {
     assert_eq!(noticed(zone(), rectangle(fx!(30), Fx::ONE)), 1, "a visitor larger than the sensor");
 }
 
-/// Switches of contact and hit events end no visit, and neither do switches that change nothing for the pair.
+/// Changing the switches of contact and hit events ends no visit. Changing `detect_sensors` does not either, because
+/// the visitor is no sensor.
 #[test]
 fn a_switch_of_other_events_ends_no_visit() {
     let switches: [fn(&mut EventSwitches); 3] =

@@ -327,7 +327,7 @@ fn a_fast_rotating_body_becomes_fixed() {
     assert_eq!(world.body(star).expect("there").angular_velocity(), Fx::ZERO);
 }
 
-/// The speed limit concerns changes of the mass only.
+/// At a speed above the limit, the world refuses changes of the mass and accepts changes of the material.
 #[test]
 fn a_material_changes_at_any_speed() {
     let mut world = weightless();

@@ -323,8 +323,8 @@ fn a_row_of_sleepers_wakes_in_one_tick() {
 }
 
 /// The support of a resting box is removed, while another body keeps their island awake. At 240 Hz, after the first
-/// tick of its fall, the box is slower than its sleep speed. If the box's ticks at rest were not counted anew, the box
-/// would fall asleep in the air.
+/// tick of its fall, the box is slower than its sleep speed. If the count of the box's ticks at rest were not
+/// restarted, the box would fall asleep in the air.
 #[test]
 fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     type Edit = fn(&mut World, BodyId) -> Result<(), WorldError>;

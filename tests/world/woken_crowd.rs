@@ -1,4 +1,4 @@
-//! Thousands of bodies that wake in one tick wake alike in all copies of a world.
+//! After thousands of bodies have woken in one tick, all copies of a world have equal states.
 
 use lockstep2d::body::BodyDef;
 use lockstep2d::fx;

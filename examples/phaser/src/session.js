@@ -69,7 +69,8 @@ export class Session {
                 this.#update();
             };
         }
-        // A timer, not the loop of Phaser, which stops in the background: the other player must not have to wait.
+        // A timer drives the match, because the loop of Phaser stops in the background, and the other player must not
+        // have to wait.
         this.timer = setInterval(() => this.#update(), 4);
     }
 

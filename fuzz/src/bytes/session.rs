@@ -1,7 +1,7 @@
 //! Sends changed packets to two peers that play and to a third one that joins them after 20 ticks.
 //!
-//! After 20 to 39 ticks, the attacks follow that the input describes. Each attack changes one of the last 64 packets
-//! and sends it.
+//! After 20 to 39 ticks, the attacks that the input describes begin. Each attack changes one of the last 64 packets and
+//! sends it.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 

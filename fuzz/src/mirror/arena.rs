@@ -56,7 +56,8 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Swaps two vacant slots in the list, or adds one to it, or adds a slot whose generations are used up.
+    /// Swaps two entries of the list of vacant slots, adds a vacant slot with an entry, or adds a slot whose
+    /// generations are used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

@@ -26,7 +26,7 @@ struct KeptManifold {
 }
 
 impl KeptManifold {
-    /// The world accepts zero and unit vectors, and refuses the last two.
+    /// The world accepts the zero vector and unit vectors. It refuses the last two of these vectors.
     const NORMALS: [Vector; 6] = [
         [0, 0],
         [0, 1 << 30],
@@ -133,7 +133,8 @@ impl State {
         Some(())
     }
 
-    /// Moves an active contact to the sleeping contacts, or the other way, so that it is in the wrong list.
+    /// Moves an active contact to the sleeping contacts, or a sleeping contact to the active ones, so that it is in the
+    /// wrong list.
     fn alter_sleeping_contacts(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
             true => (&mut self.contacts, &mut self.sleeping_contacts),

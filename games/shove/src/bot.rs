@@ -78,7 +78,7 @@ impl Bot {
         let way = there - me.position;
         let distance = way.length();
         let outwards = other.position.normalized().map_or(Vec2::ZERO, Vec2::widen);
-        // Component of the way to the opponent that points outwards.
+        // Outward component of the vector to the opponent, in metres.
         let inside = way.dot(outwards);
         if inside > fx_mul(distance, fx!(0.4)) {
             let push = Pad::towards(way);

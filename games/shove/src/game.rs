@@ -97,7 +97,8 @@ impl Shove {
         }
     }
 
-    /// Stops at the first change that the world refuses. The world may refuse one after an untrusted save was loaded.
+    /// Stops at the first change that the world refuses. The world may refuse a change after an untrusted save has been
+    /// loaded.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {

@@ -1,4 +1,4 @@
-//! The contract of [`Game`]: the same pads give the same hashes, whatever saves, loads and encodings come in between.
+//! The contract of [`Game`]: the same pads give the same hashes, regardless of saves, loads and encodings in between.
 
 use lockstep2d::check::{self, CheckOptions, Phases};
 use lockstep2d::codec::{decode, encode};

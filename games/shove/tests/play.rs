@@ -153,7 +153,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
             assert!(matches!(verdict, Verdict::Match { ticks: 600, .. }), "{name}: {verdict}");
             assert_eq!(pads(replay), all);
         }
-        // The replay of the killed process is the beginning of the others.
+        // The inputs in the replay of the killed process are a prefix of those in the other replays.
         let seen = pads(&cut);
         assert!(seen.len() >= 120 && all.starts_with(&seen), "{name}: {} ticks", seen.len());
         let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];
@@ -199,7 +199,8 @@ fn wrong_seats_are_refused() {
     host.wait().unwrap();
 }
 
-/// After an interrupt the other players continue without waiting, and the replay of the interrupted process has an end.
+/// After an interrupt the other players continue without waiting, and the replay of the interrupted process is
+/// complete.
 #[cfg(unix)]
 #[test]
 #[ignore = "plays in real time: run by .ci/run"]

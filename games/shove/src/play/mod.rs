@@ -77,7 +77,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
 }
 
 /// Opens the file of the replay or the report. The replay is written during the match, so a killed process leaves a
-/// replay without its end. Two processes cannot create the same file.
+/// replay without a trailer. Two processes cannot create the same file.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     let file = match File::create_new(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
