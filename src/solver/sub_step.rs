@@ -5,7 +5,9 @@
 //! constraints.
 
 use super::COLD_ROUNDS;
-use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
+use super::contact::{
+    self, Constants, ContactShare, FastImpact, Measure, MeasureApproach, PointOrder, PredictImpacts,
+};
 use super::contact_velocity::ContactVelocities;
 use super::context::{Bias, Relax, StepContext};
 use super::integrate::{MovingBody, integrate_displacements, integrate_velocities};
@@ -83,8 +85,13 @@ impl SolverShare<'_, '_> {
             contacts.run(Measure, context);
         }
         if contacts.has_extras() {
-            velocities.exempt(context, || contacts.bounce(context));
+            contacts.run(FastImpact::Withdraw, context);
+            velocities.exempt(context, || {
+                contacts.run(FastImpact::Restore, context);
+                contacts.bounce(context);
+            });
             contacts.add_hits(context);
+            contacts.run(FastImpact::Clear, context);
         }
     }
 }

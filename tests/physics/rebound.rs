@@ -230,6 +230,35 @@ fn elastic_falls_rebound_to_the_same_height() {
     }
 }
 
+/// `|v'| = e |v|` in whichever sub-step the impact occurs, up to the largest speed of a definition. A light ball that a
+/// ball of ten times its mass hits leaves it with 20/11 of its speed.
+#[test]
+fn fast_rebounds_keep_their_speed() {
+    let speed_after = |speed: Fx, gap: Fx, target: (BodyDef, Fx)| {
+        let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(fx!(1));
+        let (def, density) = target;
+        let hit = world.spawn(&def.position((fx!(0.5), fx!(0))), &[ball.density(density)]).expect("valid");
+        let def = BodyDef::dynamic().position((-gap - fx!(0.5), fx!(0))).velocity((speed, fx!(0)));
+        let thrown = world.spawn(&def, &[ball]).expect("valid");
+        (0..10).for_each(|_| world.step());
+        assert_eq!(world.faults(), 0, "{speed} m/s");
+        [thrown, hit].map(|id| world.body(id).expect("there").velocity().x)
+    };
+    for phase in 0..12 {
+        let gap = |speed: Fx| speed * phase / 720 + fx!(0.1);
+        for speed in [fx!(100), fx!(255), fx!(300), fx!(400)] {
+            let [back, _] = speed_after(speed, gap(speed), (BodyDef::fixed(), fx!(1)));
+            assert!((back + speed).abs() < fx!(0.01), "phase {phase}: {back} of {speed} m/s");
+        }
+        for speed in [fx!(100), fx!(200)] {
+            let [_, away] = speed_after(speed, gap(speed), (BodyDef::dynamic(), fx!(0.1)));
+            let expected = speed * 20 / 11;
+            assert!((away - expected).abs() < fx!(0.05), "phase {phase}: {away} instead of {expected} m/s");
+        }
+    }
+}
+
 /// The wall returns `e` times the speed. The change of velocity is below 511 m/s, the limit of an impulse.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {

@@ -20,6 +20,7 @@
 mod batch;
 mod constants;
 mod extras;
+mod fast_impact;
 mod hit;
 mod impact;
 mod input;
@@ -44,6 +45,7 @@ use crate::math::Speed;
 use batch::Batch;
 pub(super) use constants::Constants;
 use extras::ContactExtras;
+pub(super) use fast_impact::FastImpact;
 use hit::AddHits;
 pub(super) use impact::{MeasureApproach, PredictImpacts};
 pub(crate) use input::ActiveContact;

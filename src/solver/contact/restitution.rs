@@ -13,7 +13,6 @@
 //! approach at the next contact, and balls in a groove would bounce for ever.
 
 use super::super::batches::{BatchParts, Operation};
-use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{BodyPairW, UNIT};
 use super::Contacts;
 use super::batch::Batch;
@@ -89,11 +88,13 @@ impl Operation<Contacts> for ApplyRestitution {
                 let error = L::add_saturating(pair.velocity(n, &point.normal, reader), bounce);
                 let old = L::load(&rebound[i].new);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
-                let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
+                policy.count_faults_in(mask);
+                let new = L::select(mask, policy.impulse(wanted), old);
                 L::store(new, &mut rebound[i].new);
                 policy.apply(&mut pair, &point.normal, L::sub(new, old));
             }
         }
+        policy.count_faults_in(active);
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
@@ -180,7 +181,11 @@ fn share_without_gain<const N: usize>(
 
 /// Mask of the lanes in which a point bounces.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
+pub(super) fn bounces<L: Lanes<N>, const N: usize>(
+    batch: &Batch<N>,
+    extras: &ContactExtras<N>,
+    i: usize,
+) -> L::Mask {
     if i >= batch.count {
         return L::greater(L::splat(0), L::splat(0));
     }

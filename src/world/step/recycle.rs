@@ -2,16 +2,19 @@
 
 use crate::body::{Body, BodyKind};
 use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
-use crate::math::{Length, Vec2};
+use crate::math::{Length, Speed, Vec2};
 use crate::world::cache::{ClosingBound, Margins, Recycled, ShapeMotion};
 use crate::world::state::State;
+
+/// Speed at the radius of gyration, in m/s, up to which a dynamic body hardly turns.
+const TURNING_SPEED: Speed = Speed::lit("0.02");
 
 /// The shapes of a contact, and the limits within which it keeps its manifold and lever arms.
 pub(super) struct Recycling<'a> {
     bodies: [&'a Body; 2],
     shapes: [&'a ShapeMotion; 2],
     extents: [Length; 2],
-    /// Whether a round shape may roll on a body that is not dynamic.
+    /// Whether a round shape may roll: one of the bodies is not dynamic or turns.
     rolls: bool,
     /// Change of a lever arm, in metres, up to which the contact keeps the arm.
     arm_tolerance: Length,
@@ -25,9 +28,10 @@ impl<'a> Recycling<'a> {
     /// the relative movement, including that in this tick, is at most that 64th and at most a quarter of the
     /// speculative distance.
     ///
-    /// If a round shape may roll on a body that is not dynamic, both limits are a 256th of that 64th. Otherwise an
-    /// outdated normal would stop a slow ball at a seam between two blocks, and would let a roly-poly toy lean. Between
-    /// dynamic bodies the limits are not reduced, because plates on rollers are stable only if lever arms are kept.
+    /// If a round shape may roll, both limits are a 256th of that 64th. Otherwise an outdated normal would stop a slow
+    /// ball at a seam between two blocks, and would let a roly-poly toy lean or swing ever higher. Between dynamic
+    /// bodies that hardly turn the limits are not reduced, because plates on rollers are stable only if lever arms are
+    /// kept.
     ///
     /// Nothing is kept on a kinematic body that turns, because lever arms that lag behind give the wrong velocity at
     /// the contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
@@ -42,7 +46,8 @@ impl<'a> Recycling<'a> {
         let bodies = shapes.map(|shape| state.bodies.at(shape.body));
         let extents = shapes.map(ShapeMotion::extent);
         let is_round = count < 2 && (shapes[0].radius > 0 || shapes[1].radius > 0);
-        let rolls = is_round && !(bodies[0].is_dynamic() && bodies[1].is_dynamic());
+        let hardly_turns = |body: &Body| body.is_dynamic() && body.spin.abs() <= TURNING_SPEED;
+        let rolls = is_round && !bodies.into_iter().all(hardly_turns);
         let turns = |body: &Body| body.kind() == BodyKind::Kinematic && body.spin != 0;
         let arm_tolerance: Length = match bodies.into_iter().any(turns) {
             true => Length::ZERO,

@@ -1,0 +1,78 @@
+//! Fast impacts with restitution: the next sub-step does not apply their impulses again.
+//!
+//! In other contacts, the next sub-step first repeats the velocity change of the accumulated impulses and then corrects
+//! the impulses (`contact_velocity.rs`). After a rebound, the correction removes them completely. Between the two, the
+//! velocity is that of the rebound plus that of the impact. If this sum saturated, the rebound would become slower.
+
+use super::super::batches::{BatchParts, Operation};
+use super::super::pair::BodyPairW;
+use super::Contacts;
+use super::batch::Batch;
+use super::extras::ContactExtras;
+use super::overflow_policy::{OverflowPolicy, Saturating};
+use super::restitution::bounces;
+use crate::math::Speed;
+use crate::simd::{Ints, Lanes};
+
+/// Normal approach speed, in m/s, from which an impact is fast. Velocities up to 511 m/s are in range, so that only
+/// impacts of more than half of it saturate if one of the bodies is at rest, and slower ones if both move.
+///
+/// Slow impacts keep their impulses, because in heaps they recur: without the impulses, 5 instead of at most 3 of 120
+/// heaps do not come to rest.
+const FAST: Speed = Speed::lit("64");
+
+/// The stages of a sub-step for fast impacts, in this order.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) enum FastImpact {
+    /// Takes the impulses back, so that their velocity changes are not repeated.
+    Withdraw,
+    /// Applies the impulses again. Must run within `ContactVelocities::exempt`.
+    Restore,
+    /// Sets the impulses to zero.
+    Clear,
+}
+
+impl Operation<Contacts> for FastImpact {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let fast = fast::<L, N>(batch, extras);
+        if !L::any(fast) {
+            return;
+        }
+        if let FastImpact::Clear = self {
+            for point in &mut batch.points[..batch.count] {
+                clear::<L, N>(&mut point.normal_lambda, fast);
+            }
+            clear::<L, N>(&mut batch.tangent_lambda, fast);
+            return;
+        }
+        let policy = &mut Saturating::<L, N>::new(faults);
+        let part = |lambda: &Ints<N>| {
+            let lambda = L::select(fast, L::load(lambda), L::splat(0));
+            if let FastImpact::Withdraw = self { L::sub(L::splat(0), lambda) } else { lambda }
+        };
+        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        for point in &batch.points[..batch.count] {
+            policy.apply(&mut pair, &point.normal, part(&point.normal_lambda));
+        }
+        policy.apply(&mut pair, &batch.tangent, part(&batch.tangent_lambda));
+        pair.store(bodies, &batch.changed);
+    }
+}
+
+#[inline(always)]
+fn clear<L: Lanes<N>, const N: usize>(lambda: &mut Ints<N>, lanes: L::Mask) {
+    let rest = L::select(lanes, L::splat(0), L::load(lambda));
+    L::store(rest, lambda);
+}
+
+/// Mask of the lanes in which a point bounces after a fast approach.
+#[inline(always)]
+fn fast<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>) -> L::Mask {
+    let [first, second] = [0, 1].map(|i| {
+        let fast = L::greater(L::splat(1 - FAST.to_bits()), L::load(&extras.impacts.approach[i]));
+        L::both(bounces::<L, N>(batch, extras, i), fast)
+    });
+    L::both(L::greater(L::load(&extras.restitution), L::splat(0)), L::either(first, second))
+}
