@@ -62,8 +62,8 @@ pub enum Continuous {
     /// Bodies of all kinds, except bullets.
     Bullet,
     /// Fixed bodies, and kinematic bodies relative to which this body is fast. A platform that carries the body does
-    /// not count, because it is slow relative to the body. The check has a small cost in every tick of a world with
-    /// kinematic bodies.
+    /// not count, because it is slow relative to the body. A sleeping body wakes if a kinematic body would pass through
+    /// it. The check has a small cost in every tick of a world with kinematic bodies.
     Kinematic,
 }
 

@@ -37,8 +37,8 @@ pub(crate) use contact::{ActiveContact, ContactResults, Surface, SurfaceSide, Wa
 use contact::{ContactSet, ContactSource, ContactStore};
 use contact_velocity::{ContactVelocities, PushedBody};
 use context::StepContext;
-pub(crate) use integrate::AreaEffect;
 use integrate::MovingBody;
+pub(crate) use integrate::{AreaEffect, limit_speed};
 pub use joint::{
     Distance, Drive, Gear, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
     Prismatic, Pull, Pulley, Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,

@@ -19,7 +19,7 @@ pub(crate) struct Island {
 }
 
 /// A pair of shapes, as events report it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
     /// The sensors of the pair: see [`State::sensor_of`].
@@ -27,7 +27,7 @@ pub(crate) struct Reported {
 }
 
 /// Sensors of a pair. Two sensors may detect each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Side {
     A,
     B,
@@ -51,8 +51,9 @@ pub(crate) struct State {
     pub(crate) sleeping_contacts: SleepingContacts,
     /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
-    /// Contacts that an edit has ended since the last tick, for the events of the next tick.
-    pub(crate) removed_contacts: Vec<Reported>,
+    /// Contacts that edits since the last tick have ended or whose events they have switched, for the events of the next
+    /// tick. A pair of solid shapes that is listed twice, because it was switched off and on, has no event.
+    pub(crate) edited_contacts: Vec<Reported>,
     pub(crate) rng: Rng,
 }
 
@@ -69,7 +70,7 @@ impl State {
             contacts: Vec::new(),
             sleeping_contacts: SleepingContacts::default(),
             pairs_left_out: false,
-            removed_contacts: Vec::new(),
+            edited_contacts: Vec::new(),
             rng: Rng::new(0),
         }
     }

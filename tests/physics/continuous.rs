@@ -1,6 +1,6 @@
 //! Fast bodies do not tunnel through thin walls.
 
-use lockstep2d::body::{BodyDef, Continuous, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, Continuous, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
@@ -233,4 +233,100 @@ fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     };
     let (blind, seeing) = (mean(Continuous::Fixed), mean(Continuous::Kinematic));
     assert!(seeing < blind + fx!(0.003), "{seeing} m instead of {blind} m");
+}
+
+/// A kinematic arm from 0.1 m to 2 m along the x axis, 2 cm thick, that turns about the origin.
+fn arm(world: &mut World, spin: Fx) -> BodyId {
+    let (near, far, half) = (fx!(0.1), fx!(2), fx!(0.01));
+    let corners = [(near, -half), (far, -half), (far, half), (near, half)].map(|(x, y)| Vec2::new(x, y));
+    let blade = ShapeDef::new(Polygon::new(&corners).expect("convex"));
+    world.spawn(&BodyDef::kinematic().angular_velocity(spin), &[blade]).expect("valid")
+}
+
+/// A ball of 10 cm at an angle, 1.5 m from the origin.
+fn ball_at(world: &mut World, degrees: Fx, def: BodyDef) -> BodyId {
+    let place = Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(fx!(1.5), fx!(0)));
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.05)).expect("valid"));
+    world.spawn(&def.position(place), &[ball]).expect("valid")
+}
+
+/// Height of a body above the line of an arm, in the axes of the arm.
+fn ahead_of(world: &World, arm: BodyId, body: BodyId) -> Fx {
+    let arm = world.body(arm).expect("alive").transform();
+    arm.apply_inverse(world.body(body).expect("alive").position()).y
+}
+
+#[test]
+fn a_sleeping_ball_wakes_before_a_turning_arm_passes_it() {
+    for (spin, degrees) in [(fx!(90), fx!(30)), (fx!(-90), fx!(-30)), (fx!(90), fx!(60)), (fx!(60), fx!(20))]
+    {
+        let mut world = weightless();
+        let arm = arm(&mut world, spin);
+        let def = BodyDef::dynamic().asleep().continuous(Continuous::Kinematic);
+        let ball = ball_at(&mut world, degrees, def);
+        assert!(world.body(ball).expect("alive").is_asleep());
+        for tick in 0..3 {
+            world.step();
+            let ahead = ahead_of(&world, arm, ball);
+            assert!((ahead > 0) == (spin > 0), "{spin} rad/s, {degrees} degrees, tick {tick}: {ahead}");
+        }
+        assert!(!world.body(ball).expect("alive").is_asleep());
+        assert_eq!(world.validate(), Ok(()));
+    }
+}
+
+/// An arm that does not reach a sleeping ball, or that the settings let pass through it, leaves the ball asleep.
+#[test]
+fn an_arm_that_meets_no_sleeping_ball_wakes_none() {
+    let sleeps = |continuous: Continuous, degrees: Fx, spin: Fx, config: Config| {
+        let mut world = World::new(Config { gravity: Vec2::ZERO, ..config }).expect("valid");
+        let arm = arm(&mut world, spin);
+        let ball = ball_at(&mut world, degrees, BodyDef::dynamic().asleep().continuous(continuous));
+        world.step();
+        world.set_velocity(arm, Vec2::ZERO, fx!(0)).expect("valid");
+        world.step();
+        world.body(ball).expect("alive").is_asleep()
+    };
+    // The arm turns by 86 degrees.
+    assert!(sleeps(Continuous::Kinematic, fx!(100), fx!(90), Config::default()));
+    assert!(sleeps(Continuous::Kinematic, fx!(-30), fx!(90), Config::default()));
+    assert!(sleeps(Continuous::Fixed, fx!(60), fx!(90), Config::default()));
+    let without = Config { continuous: false, ..Config::default() };
+    assert!(sleeps(Continuous::Kinematic, fx!(60), fx!(90), without));
+    assert!(!sleeps(Continuous::Kinematic, fx!(60), fx!(90), Config::default()));
+}
+
+/// At 20 ticks per second an arm may turn by 206 degrees in a tick. It carries a ball in front of it along, and leaves
+/// a ball alone that only a turn in the other direction would meet.
+#[test]
+fn an_arm_that_turns_by_more_than_half_a_turn_is_swept_the_right_way_round() {
+    for continuous in [Continuous::Kinematic, Continuous::Bullet] {
+        for (spin, degrees, meets) in [
+            (fx!(72), fx!(60), true),
+            (fx!(-72), fx!(-60), true),
+            (fx!(72), fx!(-60), false),
+            (fx!(-72), fx!(60), false),
+        ] {
+            let mut world = World::new(Config { gravity: Vec2::ZERO, tick_rate: 20, ..Config::default() })
+                .expect("valid");
+            let arm = arm(&mut world, spin);
+            // A bullet is swept only if it is fast itself.
+            let speed = if continuous == Continuous::Bullet { fx!(1.5) } else { fx!(0) };
+            let inwards = Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(-speed, fx!(0)));
+            let ball = BodyDef::dynamic().continuous(continuous).velocity(inwards);
+            let ball = ball_at(&mut world, degrees, ball);
+            let start = world.body(ball).expect("alive").position();
+            world.step();
+            let moved =
+                (world.body(ball).expect("alive").position() - start - inwards.scale(fx!(0.05))).length();
+            let case = format!("{continuous:?}, {spin} rad/s, {degrees} degrees: {moved}");
+            if !meets {
+                assert!(moved < fx!(0.001), "{case}");
+            } else if continuous == Continuous::Kinematic {
+                let ahead = ahead_of(&world, arm, ball);
+                assert!((fx!(0.02)..fx!(0.1)).contains(&ahead.abs()), "{case}, {ahead}");
+                assert!((ahead > 0) == (spin > 0), "{case}, {ahead}");
+            }
+        }
+    }
 }

@@ -340,7 +340,7 @@ impl<'a> Reader<'a> {
         self.list_of_contacts("contacts");
         self.list_of_contacts("sleeping contacts");
         self.u8("pairs were left out");
-        for _ in 0..self.count("contacts that ended by removal") {
+        for _ in 0..self.count("contacts that edits changed") {
             self.handle("shape A");
             self.handle("shape B");
             self.option("one is a sensor", |reader| {

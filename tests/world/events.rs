@@ -1,12 +1,14 @@
 //! Hit, contact and move events, in the documented order.
 
-use lockstep2d::body::{Body, BodyDef, Continuous, EventSwitches, ShapeDef};
+use lockstep2d::body::{Body, BodyDef, Continuous, EventSwitches, ShapeDef, ShapeId};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::Backend;
 use lockstep2d::world::{Config, ContactEvent, HitEvent, World};
 
-use super::{ball, capsule, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
+use super::{
+    ball, capsule, is_asleep, rectangle, run, shape_of, spawn, square, weightless, world_with_floor,
+};
 
 fn hitting(shape: ShapeDef) -> ShapeDef {
     shape.events(EventSwitches { hit: true, ..EventSwitches::default() })
@@ -299,4 +301,89 @@ fn switching_events_changes_no_motion() {
     }
     assert_eq!(play(false, true).1, play(true, true).1, "one shape that reports the pair is enough");
     assert!(play(false, false).1[0] < play(true, false).1[0], "each switch begins or ends contacts");
+}
+
+/// A ball that was at rest on the floor and now rises by a centimetre: the pair touches until the gap exceeds the
+/// speculative distance.
+fn barely_touching(events: EventSwitches) -> (World, ShapeId) {
+    let mut world = weightless();
+    let silent = EventSwitches { contact: false, ..EventSwitches::default() };
+    spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), rectangle(fx!(5), fx!(1)).events(silent));
+    let def = BodyDef::dynamic().position((fx!(0), fx!(0.5))).never_sleeps();
+    let id = spawn(&mut world, def, ball(fx!(0.5)).events(events));
+    run(&mut world, 2);
+    world.set_transform(id, (fx!(0), fx!(0.51)), Angle::ZERO).expect("there");
+    run(&mut world, 1);
+    let id = shape_of(&world, id);
+    (world, id)
+}
+
+/// Numbers of begins and ends in a tick, and whether the contact touches.
+fn tick(world: &mut World) -> (usize, usize, bool) {
+    run(world, 1);
+    let touches = world.contacts().any(|contact| contact.touching);
+    (world.events().contact_begin.len(), world.events().contact_end.len(), touches)
+}
+
+#[test]
+fn events_that_are_switched_on_tell_of_all_pairs_that_touch() {
+    let on = EventSwitches::default();
+    let off = EventSwitches { contact: false, ..on };
+    let switch = |world: &mut World, id: ShapeId, events: EventSwitches| {
+        let def = *world.shape(id).expect("there").def();
+        world.set_shape(id, &def.events(events)).expect("valid");
+        assert_eq!(world.validate(), Ok(()));
+    };
+    let (mut world, id) = barely_touching(off);
+    assert_eq!(tick(&mut world), (0, 0, true));
+    switch(&mut world, id, on);
+    let mut copy = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+    assert_eq!(tick(&mut world), (1, 0, true));
+    assert_eq!(tick(&mut copy), (1, 0, true));
+    assert_eq!(tick(&mut world), (0, 0, true));
+    switch(&mut world, id, off);
+    assert_eq!(tick(&mut world), (0, 1, true), "the pair still touches, but has no events");
+    assert_eq!(tick(&mut world), (0, 0, true));
+
+    // What changes and changes back has no events.
+    switch(&mut world, id, on);
+    switch(&mut world, id, off);
+    assert_eq!(tick(&mut world), (0, 0, true));
+    switch(&mut world, id, on);
+    assert_eq!(tick(&mut world), (1, 0, true));
+    switch(&mut world, id, off);
+    switch(&mut world, id, on);
+    assert_eq!(tick(&mut world), (0, 0, true));
+
+    // A pair that parts before its begin was told has neither event, whether it leaves or is removed.
+    let body = world.body_of(id).expect("there");
+    switch(&mut world, id, off);
+    assert_eq!(tick(&mut world), (0, 1, true));
+    for height in [fx!(0.6), fx!(30)] {
+        let mut away = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+        switch(&mut away, id, on);
+        away.set_transform(body, (fx!(0), height), Angle::ZERO).expect("there");
+        assert_eq!(tick(&mut away), (0, 0, false), "{height}");
+        assert_eq!(tick(&mut away), (0, 0, false), "{height}");
+    }
+    let mut removed = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+    switch(&mut removed, id, on);
+    removed.despawn(body).expect("there");
+    assert_eq!(tick(&mut removed), (0, 0, false));
+
+    // A pair of bodies that are put to sleep is told as well.
+    let mut sleeping = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+    switch(&mut sleeping, id, on);
+    sleeping.sleep(body).expect("dynamic");
+    assert_eq!(tick(&mut sleeping), (1, 0, false));
+    assert!(is_asleep(&sleeping, body));
+    sleeping.wake(body).expect("there");
+    assert_eq!(tick(&mut sleeping), (0, 0, true));
+
+    // An end is told although the pair was removed after its events were switched off.
+    switch(&mut world, id, on);
+    assert_eq!(tick(&mut world), (1, 0, true));
+    switch(&mut world, id, off);
+    world.despawn(body).expect("there");
+    assert_eq!(tick(&mut world), (0, 1, false));
 }

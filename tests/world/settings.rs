@@ -1,6 +1,6 @@
 //! Settings that change at run time.
 
-use lockstep2d::body::{BodyDef, BodyId};
+use lockstep2d::body::{BodyDef, BodyId, BodyKind, WorldError};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef, Revolute, SolverSettings};
@@ -228,4 +228,68 @@ fn a_target_is_reached_at_another_tick_rate() {
         );
         assert!((body.angular_velocity() - turning).abs() < fx!(0.001), "{}", body.angular_velocity());
     }
+}
+
+/// A lower tick rate or speed limit is refused if a kinematic body is faster than the new limit, and changes nothing.
+#[test]
+fn settings_that_make_a_kinematic_body_too_fast_are_refused() {
+    type Change = fn(&mut Config);
+    let rate: Change = |config| (config.tick_rate, config.solver.sub_steps) = (20, 4);
+    let speed: Change = |config| config.solver.speed_max = fx!(300);
+    let defs = [
+        BodyDef::kinematic().velocity((fx!(300.01), fx!(0))),
+        BodyDef::kinematic().velocity((fx!(220), fx!(-220))),
+        BodyDef::kinematic().angular_velocity(fx!(-75.01)),
+    ];
+    for change in [rate, speed] {
+        for def in defs {
+            let mut world = super::weightless();
+            let id = spawn(&mut world, def, square(fx!(0.5)));
+            let (before, mut config) = (world.state_hash(), *world.config());
+            change(&mut config);
+            let refused = world.set_config(&config);
+            let is_clear = |error| matches!(error, WorldError::SpeedOutOfRange { max, .. } if max == 300);
+            assert!(refused.is_err_and(is_clear), "{refused:?}");
+            assert_eq!(world.state_hash(), before);
+            let slower = |v: Vec2<Fx>| Vec2::new(v.x / 2, v.y / 2);
+            let body = world.body(id).expect("there");
+            let (velocity, turning) = (slower(body.velocity()), body.angular_velocity() / 2);
+            world.set_velocity(id, velocity, turning).expect("slow enough");
+            set(&mut world, change);
+        }
+    }
+    // A tick limits the speed of dynamic bodies.
+    let mut world = super::weightless();
+    spawn(&mut world, BodyDef::dynamic().velocity((fx!(390), fx!(0))), square(fx!(0.5)));
+    spawn(&mut world, BodyDef::kinematic().velocity((fx!(300), fx!(0))), square(fx!(0.5)));
+    set(&mut world, rate);
+}
+
+/// A target in reach at 60 ticks per second is out of reach at 120 if its distance is more than 400 m/s allow.
+#[test]
+fn a_tick_rate_at_which_a_target_is_out_of_reach_is_refused() {
+    let mut world = super::weightless();
+    let id = spawn(&mut world, BodyDef::kinematic(), square(fx!(0.5)));
+    world.move_to(id, (fx!(4), fx!(0)), Angle::ZERO).expect("in reach");
+    let config = Config { tick_rate: 120, ..*world.config() };
+    let refused = world.set_config(&config);
+    assert!(matches!(refused, Err(WorldError::SpeedOutOfRange { .. })), "{refused:?}");
+    set(&mut world, |config| config.tick_rate = 90);
+    run(&mut world, 1);
+    assert_eq!(world.body(id).expect("there").position(), Vec2::new(fx!(4), fx!(0)));
+}
+
+/// A dynamic body may be above the speed limit until the next tick. As a kinematic body it is within the limit at once.
+#[test]
+fn a_fast_body_that_becomes_kinematic_is_slowed_to_the_limit() {
+    let mut world = super::weightless();
+    let id = spawn(&mut world, BodyDef::dynamic(), square(fx!(0.5)));
+    let mass = world.body(id).expect("there").mass();
+    world.apply_impulse_to_centre(id, (mass * 400, -mass * 300)).expect("dynamic");
+    assert!(world.body(id).expect("there").velocity().length() > fx!(499));
+    world.set_kind(id, BodyKind::Kinematic).expect("valid");
+    let velocity = world.body(id).expect("there").velocity();
+    assert!((velocity - Vec2::new(fx!(320), fx!(-240))).length() < fx!(0.001), "{velocity}");
+    assert!(velocity.length() <= fx!(400), "{velocity}");
+    assert_eq!(world.validate(), Ok(()));
 }

@@ -190,7 +190,7 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
 }
 
 /// Shortens a velocity to the limit. This is no fault, because the limit is a setting.
-fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
+pub(crate) fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {
         return;

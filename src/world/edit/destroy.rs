@@ -98,7 +98,7 @@ impl World {
             touching.filter(|contact| contact.touching && ends(contact.shapes)).copied().collect();
         for contact in ended {
             let removed = self.state.reported(&contact);
-            self.state.removed_contacts.extend(removed);
+            self.state.edited_contacts.extend(removed);
             if self.state.supports(contact.shapes) {
                 contact_ended(&mut self.state, contact.shapes);
             }

@@ -3,6 +3,7 @@
 
 use alloc::boxed::Box;
 
+use super::velocity_to;
 use crate::body::{Body, BodyId, BodyKind, Handle, Pose, WorldError, check_position};
 use crate::fx;
 use crate::math::{Angle, Fx, Vec2};
@@ -152,16 +153,14 @@ impl World {
         if body.kind() != BodyKind::Kinematic {
             return Err(WorldError::WrongKind(id));
         }
-        let rate = i64::from(self.state.config.tick_rate);
         let mut there = body.clone();
         there.set_transform(position, angle);
-        let (shift, turn) = (there.centre - body.centre, (angle - body.angle).to_radians());
-        let velocity = Vec2::new(shift.x.saturating_mul_int(rate), shift.y.saturating_mul_int(rate));
-        let angular = if body.turns() { turn.saturating_mul_int(rate) } else { Fx::ZERO };
+        let target = Pose { centre: there.centre, angle };
+        let (velocity, angular) = velocity_to(body, &target, self.state.config.tick_rate);
         self.set_velocity(id, velocity, angular)?;
         let body = self.state.bodies.at_mut(id.slot());
         if body.is_moving() {
-            body.target = Some(Box::new(Pose { centre: there.centre, angle }));
+            body.target = Some(Box::new(target));
             body.hold_locked_axes();
         }
         Ok(())

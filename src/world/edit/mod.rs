@@ -18,7 +18,7 @@ pub use fault::BodyField;
 use super::World;
 use super::derived::fat_box;
 use super::state::State;
-use crate::body::{Body, Handle, MassProperties, ShapeDef, WorldError};
+use crate::body::{Body, Handle, MassProperties, Pose, ShapeDef, WorldError};
 use crate::math::{Fx, Vec2, fx_mul};
 
 /// Number of contacts whose shapes are compared in one work unit.
@@ -46,13 +46,11 @@ impl World {
     /// Checks a velocity in m/s and an angular velocity in rad/s against the speed limit. The radius of gyration is in
     /// metres.
     fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
-        let max = self.state.config.solver.speed_limit(self.state.config.tick_rate);
-        for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
-            if value > max {
-                return Err(WorldError::SpeedOutOfRange { value, max });
-            }
-        }
-        Ok(())
+        check_speeds([velocity.length(), fx_mul(angular.saturating_abs(), gyration)], self.speed_limit())
+    }
+
+    fn speed_limit(&self) -> Fx {
+        self.state.config.solver.speed_limit(self.state.config.tick_rate)
     }
 
     /// Checks the angular velocity of a body against the speed limit for its new mass.
@@ -76,4 +74,18 @@ impl World {
         self.scratch.update_body(&self.state, slot);
         self.scratch.pairs.changes.sleeping_contacts_changed();
     }
+}
+
+/// Checks speeds in m/s.
+fn check_speeds(speeds: [Fx; 2], max: Fx) -> Result<(), WorldError> {
+    let too_fast = speeds.into_iter().find(|&speed| speed > max);
+    too_fast.map_or(Ok(()), |value| Err(WorldError::SpeedOutOfRange { value, max }))
+}
+
+/// The velocity in m/s and the angular velocity in rad/s with which a body reaches a pose in one tick.
+fn velocity_to(body: &Body, target: &Pose, tick_rate: u32) -> (Vec2<Fx>, Fx) {
+    let rate = i64::from(tick_rate);
+    let (shift, turn) = (target.centre - body.centre, (target.angle - body.angle).to_radians());
+    let velocity = Vec2::new(shift.x.saturating_mul_int(rate), shift.y.saturating_mul_int(rate));
+    (velocity, if body.turns() { turn.saturating_mul_int(rate) } else { Fx::ZERO })
 }

@@ -8,7 +8,8 @@ use crate::body::{
     Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::collision::Contact;
-use crate::math::{Fx, Vec2};
+use crate::math::{Fx, Speed, Vec2, narrow};
+use crate::solver::limit_speed;
 use crate::world::World;
 use crate::world::derived::{mass_of, offset_max};
 use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching};
@@ -71,8 +72,9 @@ impl World {
         Ok(())
     }
 
-    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. Its joints stay, but have no effect
-    /// while neither of their bodies is dynamic.
+    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. A body that becomes kinematic keeps its
+    /// velocity within the [speed limit](crate::solver::SolverSettings::speed_max), which impulses may have exceeded. The
+    /// joints of the body stay, but have no effect while neither of their bodies is dynamic.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the mass is out of range, a shape or the anchor of a joint is too far
@@ -101,6 +103,7 @@ impl World {
                 resting.push(joint);
             }
         }
+        let speed_limit: Speed = narrow(self.speed_limit());
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         wake_joined(&mut self.state, &mut self.scratch, id);
         for joint in resting {
@@ -113,6 +116,10 @@ impl World {
         let body = self.state.bodies.redefine(id.slot());
         if kind != BodyKind::Dynamic {
             (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
+        }
+        if kind == BodyKind::Kinematic {
+            limit_speed(&mut body.velocity, speed_limit);
+            body.spin = body.spin.clamp(-speed_limit, speed_limit);
         }
         if kind == BodyKind::Fixed {
             body.stop();
@@ -202,8 +209,8 @@ impl World {
 
     /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
     /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. If a change of
-    /// the event switches affects touching pairs, the next tick reports an end for each pair that has no events any
-    /// more, and a begin for each pair that now has events.
+    /// the event switches affects [touching](crate::world::ContactView::touching) pairs, the next tick reports an end
+    /// for each pair that has no events any more, and a begin for each pair that now has events and still touches.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value or the mass of a dynamic body is out of range, an area is not
@@ -297,8 +304,8 @@ impl World {
         }
     }
 
-    /// Replaces the definition of a shape. If the new definition changes the events of a touching pair, the pair ends,
-    /// and begins anew in the next tick.
+    /// Replaces the definition of a shape. If the new definition changes the events of a touching pair, lists the pair for
+    /// the next tick. A sensor pair also ceases to touch, and begins anew in the next tick.
     fn redefine_shape(&mut self, slot: u32, def: &ShapeDef) {
         self.spend_scan();
         let list_reported = |state: &State| -> Vec<_> {
@@ -310,9 +317,15 @@ impl World {
         let before = list_reported(&self.state);
         *self.state.shapes.redefine(slot).def = *def;
         let after = list_reported(&self.state);
-        let State { contacts, sleeping_contacts, removed_contacts, .. } = &mut *self.state;
-        for ((pair, old), _) in before.into_iter().zip(after).filter(|(old, new)| old != new) {
-            removed_contacts.extend(old);
+        let State { contacts, sleeping_contacts, edited_contacts, .. } = &mut *self.state;
+        for ((pair, old), (_, new)) in before.into_iter().zip(after).filter(|((_, old), (_, new))| old != new)
+        {
+            // The other one of a pair of solid shapes is `None`.
+            let Some(edited) = old.or(new) else { continue };
+            edited_contacts.push(edited);
+            if edited.sensor.is_none() {
+                continue;
+            }
             let find = |list: &[Contact]| list.binary_search_by_key(&pair, |contact| contact.shapes).ok();
             if let Some(index) = find(contacts) {
                 contacts[index].touching = false;

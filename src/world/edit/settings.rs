@@ -1,7 +1,8 @@
 use alloc::vec::Vec;
 
-use crate::body::{IslandId, SPEED_MAX, WorldError};
-use crate::math::{Fx, Speed, Vec2, div_round, saturate, saturate_wide};
+use super::{check_speeds, velocity_to};
+use crate::body::{BodyKind, IslandId, SPEED_MAX, WorldError};
+use crate::math::{Fx, Speed, Vec2, div_round, fx_mul, saturate, saturate_wide};
 use crate::solver::{IMPULSE_MAX, SolverSettings};
 use crate::world::World;
 use crate::world::config::{Config, check_gravity};
@@ -17,6 +18,11 @@ impl World {
     ///
     /// The tick rate must stay the same in a networked match and in a recording.
     ///
+    /// A lower [speed limit](SolverSettings::speed_max), which may follow from a lower tick rate, slows dynamic bodies
+    /// down in the next tick. Kinematic bodies keep the velocities that [`World::set_velocity`] gave them. Therefore the
+    /// settings are refused if a kinematic body is faster than the new limit. The same applies to a body on the way to a
+    /// target that is out of reach at the new tick rate: see [`World::move_to`].
+    ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
     /// let mut world = World::default();
@@ -30,7 +36,8 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Setting`] or [`WorldError::CountSetting`] if a setting is out of range,
-    /// [`WorldError::FixedSetting`] if a limit changes.
+    /// [`WorldError::FixedSetting`] if a limit changes, [`WorldError::SpeedOutOfRange`] if a kinematic body is too fast
+    /// for the new settings.
     #[doc(alias = "sub_steps")]
     #[doc(alias = "integration parameters")]
     pub fn set_config(&mut self, config: &Config) -> Result<(), WorldError> {
@@ -39,6 +46,7 @@ impl World {
         if let Some(name) = old.first_changed_limit(config) {
             return Err(WorldError::FixedSetting { name });
         }
+        self.check_kinematic_speeds(config)?;
         if is_disturbed(&old, config) {
             self.wake_all();
         }
@@ -60,6 +68,35 @@ impl World {
         check_gravity(gravity)?;
         self.wake_all();
         self.state.config.gravity = gravity;
+        Ok(())
+    }
+
+    /// Checks the velocities of kinematic bodies, which ticks do not limit, against new settings.
+    fn check_kinematic_speeds(&self, config: &Config) -> Result<(), WorldError> {
+        let max = config.solver.speed_limit(config.tick_rate);
+        let is_lower = max < self.speed_limit();
+        let has_other_rate = config.tick_rate != self.state.config.tick_rate;
+        if !(is_lower || has_other_rate) {
+            return Ok(());
+        }
+        // Stored velocities are rounded, so that one at the limit may be above it by a unit.
+        let max_stored = max + Fx::from(Speed::DELTA);
+        for (_, body) in self.state.bodies.iter().filter(|(_, body)| body.kind() == BodyKind::Kinematic) {
+            match body.target.as_deref() {
+                Some(target) => {
+                    let (velocity, angular) = velocity_to(body, target, config.tick_rate);
+                    let turning = fx_mul(angular.saturating_abs(), body.radius_of_gyration());
+                    check_speeds([velocity.length(), turning], max)?;
+                }
+                None if is_lower => {
+                    let speeds = [body.velocity().length(), Fx::from(body.spin).saturating_abs()];
+                    if speeds.into_iter().any(|speed| speed > max_stored) {
+                        check_speeds(speeds, max)?;
+                    }
+                }
+                None => {}
+            }
+        }
         Ok(())
     }
 

@@ -48,12 +48,12 @@ impl World {
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;
-    let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
+    let Rest { config, tick, faults, pairs_left_out, edited_contacts, rng } = rest;
     let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } = packed;
     let PackedBodies { bodies: motions, boxes } = packed_bodies;
     (state.config, state.tick, state.faults) = (*config, *tick, *faults);
     state.pairs_left_out = *pairs_left_out;
-    state.removed_contacts.clone_from(removed_contacts);
+    state.edited_contacts.clone_from(edited_contacts);
     state.rng.clone_from(rng);
     state.bodies.restore(bodies, |slot| stale.redefined_bodies.push(slot));
     state.shapes.restore(shapes, |slot| stale.redefined_shapes.push(slot));

@@ -52,7 +52,7 @@ pub(super) struct Rest {
     pub(super) tick: u64,
     pub(super) faults: u64,
     pub(super) pairs_left_out: bool,
-    pub(super) removed_contacts: Vec<Reported>,
+    pub(super) edited_contacts: Vec<Reported>,
     pub(super) rng: Rng,
 }
 
@@ -105,7 +105,7 @@ impl Snapshot {
         } = self;
         let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = packed;
         let packed: usize = [bodies, boxes, joints, contacts, impulses].into_iter().map(Vec::len).sum();
-        let lists = size_of_val(&*rest.removed_contacts) + changes.list_bytes();
+        let lists = size_of_val(&*rest.edited_contacts) + changes.list_bytes();
         size_of::<Self>() + packed + lists
     }
 
@@ -142,7 +142,7 @@ impl Snapshot {
             contacts,
             sleeping_contacts,
             pairs_left_out: _,
-            removed_contacts: _,
+            edited_contacts: _,
             rng: _,
         } = state;
         self.rest = Rest::of(state);
@@ -176,11 +176,11 @@ impl Snapshot {
             digest: _,
             changes: _,
         } = self;
-        let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
+        let Rest { config, tick, faults, pairs_left_out, edited_contacts, rng } = rest;
         fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
             StateHash::of_digests(shared.chain([packed]))
         }
-        let ended = StateHash::of(&(pairs_left_out, removed_contacts));
+        let ended = StateHash::of(&(pairs_left_out, edited_contacts));
         let contacts = [ended, sleeping_contacts.digest, packed.contacts].into_iter();
         WorldDigest {
             sections: [
@@ -203,7 +203,7 @@ impl Rest {
             tick: state.tick,
             faults: state.faults,
             pairs_left_out: state.pairs_left_out,
-            removed_contacts: state.removed_contacts.clone(),
+            edited_contacts: state.edited_contacts.clone(),
             rng: state.rng.clone(),
         }
     }

@@ -28,7 +28,7 @@ impl Serialize for StateView<'_> {
             contacts,
             sleeping_contacts,
             pairs_left_out,
-            removed_contacts,
+            edited_contacts,
             rng,
         } = self.0;
         let contact = |contact| (self.name(contact), contact);
@@ -46,7 +46,7 @@ impl Serialize for StateView<'_> {
             contacts: Entries(|| contacts.iter().map(contact)),
             sleeping_contacts: Entries(|| sleeping_contacts.iter().map(contact)),
             pairs_left_out: *pairs_left_out,
-            removed_contacts,
+            edited_contacts,
             islands: Entries(|| islands.iter().map(|(id, island)| (format!("island {id}"), island))),
             random: rng,
             vacant: VacantSlots {
@@ -79,7 +79,7 @@ struct Sections<'a, B, S, J, C, R, I> {
     contacts: C,
     sleeping_contacts: R,
     pairs_left_out: bool,
-    removed_contacts: &'a [Reported],
+    edited_contacts: &'a [Reported],
     islands: I,
     random: &'a Rng,
     vacant: VacantSlots,

@@ -2,12 +2,15 @@
 //! reports these events before it moves the bodies. It reports the other sensor events afterwards: see
 //! `sensor_events.rs`.
 
+use alloc::vec::Vec;
+
 use super::sensor_events::push_sensor_events;
-use crate::collision::{Contact, Manifold};
+use crate::body::Handle;
+use crate::collision::{Contact, Manifold, Pair};
 use crate::math::{Fx, fx_mul, widen};
 use crate::solver::ContactResults;
 use crate::world::cache::{MotionCache, Scratch};
-use crate::world::events::{Events, HitEvent};
+use crate::world::events::{ContactEvent, Events, HitEvent};
 use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
@@ -18,15 +21,16 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());
     let ContactResults { pushed, hit_impulses } = &solver.results;
     events.clear();
-    for removed in state.removed_contacts.drain(..) {
-        end(Some(removed), events);
-    }
+    let mut changed = core::mem::take(&mut state.edited_contacts);
     for contact in pairs.ended.drain(..).filter(|contact| contact.touching) {
-        end(reported(state, motion, &contact), events);
+        changed.extend(reported(state, motion, &contact));
         if !is_with_sensor(motion, &contact) || state.has_area(contact.shapes) {
             contact_ended(state, contact.shapes);
         }
     }
+    let untold = report_changed(state, &mut changed, events);
+    state.edited_contacts = changed;
+    let mut untold = untold.into_iter().peekable();
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
     let mut manifolds = output.contacts.iter().zip(&output.manifolds).peekable();
@@ -42,13 +46,14 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
         let separation = points.iter().map(|point| widen(point.separation)).min();
         let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
         let touching = pushed[index as usize] || within(if contact.touching { apart } else { near });
-        if touching != contact.touching {
-            contact.touching = touching;
+        let was_touching = core::mem::replace(&mut contact.touching, touching);
+        let was_told = was_touching && untold.next_if_eq(&contact.shapes).is_none();
+        if touching != was_told {
             let report = if touching { begin } else { end };
             report(reported(state, motion, contact), events);
-            if !touching && !is_with_sensor(motion, contact) {
-                contact_ended(state, contact.shapes);
-            }
+        }
+        if was_touching && !touching && !is_with_sensor(motion, contact) {
+            contact_ended(state, contact.shapes);
         }
     }
     state.contacts = contacts;
@@ -58,8 +63,37 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
         let mass = state.reduced_mass(state.contacts[hit.contact as usize].shapes);
         HitEvent { impulse: fx_mul(speed, mass), ..hit.event }
     }));
+    events.contact_begin.sort_unstable();
     events.contact_end.sort_unstable();
     events.sensor_end.sort_unstable();
+}
+
+/// Reports the pairs whose events edits or the pair update have changed, and clears their list. Returns, in order, the
+/// active pairs that touched at the end of the last tick, but whose begin has not been reported.
+///
+/// Each entry changes whether a pair touches and has events. The changes of a pair that is listed twice cancel out.
+fn report_changed(state: &State, changed: &mut Vec<Reported>, events: &mut Events) -> Vec<Pair> {
+    let touches = |list: &[Contact], pair: &Reported| {
+        let ContactEvent { shape_a, shape_b } = pair.shapes;
+        let found = list.binary_search_by_key(&(shape_a.slot(), shape_b.slot()), |contact| contact.shapes);
+        found.is_ok_and(|at| list[at].touching && state.reported(&list[at]) == Some(*pair))
+    };
+    changed.sort_unstable();
+    let mut untold = Vec::new();
+    for pair in
+        changed.chunk_by(PartialEq::eq).filter(|entries| entries.len() % 2 == 1).map(|entries| entries[0])
+    {
+        if touches(&state.contacts, &pair) {
+            untold.push((pair.shapes.shape_a.slot(), pair.shapes.shape_b.slot()));
+        } else if touches(&state.sleeping_contacts, &pair) {
+            // An edit has put the bodies to sleep.
+            begin(Some(pair), events);
+        } else {
+            end(Some(pair), events);
+        }
+    }
+    changed.clear();
+    untold
 }
 
 fn is_with_sensor(motion: &MotionCache, contact: &Contact) -> bool {

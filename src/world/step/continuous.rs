@@ -6,16 +6,18 @@
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
 //! such a body is fast is judged relative to the kinematic body, so that a body on a platform or in a drum is not held
-//! back. A kinematic body that stops a body carries it for the rest of the tick.
+//! back. A kinematic body that stops a body carries it for the rest of the tick. If such a body sleeps, it wakes in the
+//! tick in which a kinematic body would pass through it.
 
 use core::ops::ControlFlow;
 
+use super::motion::{at_start, made_motion, predicted_motion};
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{
-    SupportShape, Sweep, TimeOfImpact, is_open, normal_at, pass_direction, time_of_impact,
+    Pair, SupportShape, Sweep, TimeOfImpact, is_open, normal_at, pass_direction, time_of_impact,
 };
 use crate::fx;
-use crate::math::{Aabb, Angle, Fx, Rot, Unit, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Unit, Vec2, fx_mul};
 use crate::world::cache::{Extents, MotionCache, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
@@ -58,10 +60,9 @@ pub(super) fn swept_body(
     })
 }
 
-fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
-    let extents = scratch.shapes.poses().extents(swept.slot);
+/// Whether a body is fast relative to a kinematic body.
+fn is_fast_relative(extents: &Extents, &Sweep { start, end, turn }: &Sweep, obstacle: &Sweep) -> bool {
     let limit = SWEPT_MIN.max(extents.core / 2);
-    let Sweep { start, end, turn } = swept.sweep;
     let shift = end - carried(obstacle, start, Fx::ZERO);
     let turned = Angle::turns_to_radians(turn.saturating_sub(obstacle.turn)).saturating_abs();
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
@@ -136,8 +137,9 @@ fn first_impact(
     let shapes = &scratch.shapes;
     let body = state.bodies.at(swept.slot);
     let sees_moving = is_bullet(body) || sees_kinematic(body);
+    let extents = shapes.poses().extents(swept.slot);
     // Box around the body's shapes at the start of the sweep, at any rotation.
-    let disc = Aabb::new(body.centre, body.centre).expanded(shapes.poses().extents(swept.slot).radius);
+    let disc = Aabb::new(body.centre, body.centre).expanded(extents.radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
         if meter.is_exhausted() {
@@ -163,7 +165,9 @@ fn first_impact(
             if is_near && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
                 let is_fast = match obstacle.kind() {
-                    BodyKind::Kinematic if !is_bullet(body) => is_fast_relative(scratch, swept, &movement),
+                    BodyKind::Kinematic if !is_bullet(body) => {
+                        is_fast_relative(&extents, &swept.sweep, &movement)
+                    }
                     _ => swept.is_fast,
                 };
                 if !is_fast {
@@ -171,9 +175,7 @@ fn first_impact(
                 }
                 let &mut (support, target) = support_and_target.get_or_insert_with(|| {
                     let support = SupportShape::of(posed, body.centre);
-                    // The target depth is a quarter of the depth at which the shape's centre would be on the surface,
-                    // but at most 5 mm.
-                    (support, -(support.inner_radius() / 4).min(fx!(0.005)))
+                    (support, target_of(&support))
                 });
                 if !shapes.poses().at(other).is_solid_from(body.centre + support.middle()) {
                     return ControlFlow::Continue(());
@@ -181,19 +183,14 @@ fn first_impact(
                 if !meter.spend(IMPACT_WORK) {
                     return ControlFlow::Break(());
                 }
-                let fraction = match time_of_impact(&there, &movement, &support, &swept.sweep, target) {
-                    TimeOfImpact::Hit { fraction } => Some(fraction),
-                    // The shapes do not touch before this fraction. A fraction of 0 is ignored, so that the body does
-                    // not get stuck.
-                    TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
-                    TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
-                };
-                let stopping = fraction.filter(|&fraction| {
-                    !has_one_way(motion, [id.slot(), other]) || {
-                        let normal = normal_at((&there, &movement), (&support, &swept.sweep), fraction);
-                        normal.is_none_or(|normal| !lets_pass(state, [other, id.slot()], normal))
-                    }
-                });
+                let stopping = stop(
+                    state,
+                    motion,
+                    [other, id.slot()],
+                    (&there, &movement),
+                    (&support, &swept.sweep),
+                    target,
+                );
                 let impact = stopping.map(|fraction| Impact { fraction, obstacle: other });
                 first = first.into_iter().chain(impact).min();
             }
@@ -211,21 +208,68 @@ fn first_impact(
     first
 }
 
+/// Target of [`time_of_impact`] for a shape: a quarter of the depth at which the shape's centre would be on the surface,
+/// but at most 5 mm.
+fn target_of(support: &SupportShape) -> Fx {
+    -(support.inner_radius() / 4).min(fx!(0.005))
+}
+
+/// Fraction of the tick at which an obstacle stops a shape. `shapes` are the slots of the obstacle and of the shape.
+fn stop(
+    state: &State,
+    motion: &MotionCache,
+    shapes: [u32; 2],
+    (there, movement): (&SupportShape, &Sweep),
+    (support, sweep): (&SupportShape, &Sweep),
+    target: Fx,
+) -> Option<Fx> {
+    let fraction = match time_of_impact(there, movement, support, sweep, target) {
+        TimeOfImpact::Hit { fraction } => Some(fraction),
+        // The shapes do not touch before this fraction. A fraction of 0 is ignored, so that the body does not get
+        // stuck.
+        TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
+        TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
+    };
+    fraction.filter(|&fraction| {
+        !has_one_way(motion, shapes) || {
+            let normal = normal_at((there, movement), (support, sweep), fraction);
+            normal.is_none_or(|normal| !lets_pass(state, shapes, normal))
+        }
+    })
+}
+
+/// Whether a kinematic body passes over a sleeping body that has to wake for it. It has to if a sweep would stop it, were
+/// it awake.
+pub(super) fn wakes(state: &State, scratch: &mut Scratch, (a, b): Pair) -> bool {
+    let (own, other) = if state.body_of(a).is_asleep() { (a, b) } else { (b, a) };
+    let (body, obstacle) = (state.body_of(own), state.body_of(other));
+    let is_swept = state.config.continuous && sees_kinematic(body) && obstacle.kind() == BodyKind::Kinematic;
+    if !is_swept || !may_stop(state, scratch, own, other) {
+        return false;
+    }
+    let [slot, other_slot] = [own, other].map(|shape| state.shapes.at(shape).body().slot());
+    let Scratch { shapes, meter, .. } = scratch;
+    let poses = shapes.poses();
+    let (rest, movement) = (Sweep::fixed(body.centre), predicted_motion(state, other_slot));
+    let support = SupportShape::of(poses.at(own), body.centre);
+    let may_meet = is_fast_relative(&poses.extents(slot), &rest, &movement)
+        && poses.at(other).is_solid_from(body.centre + support.middle());
+    may_meet && meter.spend(IMPACT_WORK) && {
+        let there = SupportShape::of(poses.at(other), obstacle.centre);
+        let target = target_of(&support);
+        stop(state, poses.motion(), [other, own], (&there, &movement), (&support, &rest), target).is_some()
+    }
+}
+
 /// A shape at the start of the tick, relative to its body's centre, and the movement of the body within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
     let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
-    let stands = (support, Sweep::fixed(body.centre));
     if body.kind() == BodyKind::Fixed {
-        return stands;
+        return (support, Sweep::fixed(body.centre));
     }
-    let slot = state.shapes.at(shape).body().slot();
-    let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
-    let start = scratch.sweeps.starts[index];
-    // The angles give the rotation only up to whole turns: takes the smallest rotation.
-    let turn = (body.angle - start.angle).to_turns().to_bits();
-    let support = support.rotated(Rot::from_angle(start.angle - body.angle));
-    (support, Sweep { start: start.centre, end: body.centre, turn })
+    let movement = made_motion(state, scratch, state.shapes.at(shape).body().slot());
+    (at_start(support, &movement), movement)
 }
 
 fn stops(body: &Body, obstacle: &Body) -> bool {

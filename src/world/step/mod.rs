@@ -4,6 +4,7 @@ mod continuous;
 mod finalise;
 mod impact;
 mod joint_thresholds;
+mod motion;
 mod narrow_phase;
 mod pair_update;
 mod phases;

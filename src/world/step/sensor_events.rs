@@ -7,10 +7,10 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
+use super::motion::{at_start, made_motion};
 use crate::body::{BodyKind, ShapeId};
 use crate::collision::{Contact, Pair, SupportShape, Sweep, first_overlap, overlap};
-use crate::math::{Aabb, Angle, Fx, Rot};
-use crate::solver::turn_of;
+use crate::math::{Aabb, Fx};
 use crate::world::cache::Scratch;
 use crate::world::events::{Events, SensorEvent};
 use crate::world::islands::contact_ended;
@@ -133,20 +133,7 @@ struct MovedShape {
 impl MovedShape {
     fn of(state: &State, scratch: &Scratch, shape: u32) -> Self {
         let slot = scratch.shapes.motion().shape(shape).body;
-        let body = state.bodies.at(slot);
-        let sweep = match scratch.awake.bodies().binary_search(&slot) {
-            Err(_) => Sweep::fixed(body.centre),
-            Ok(index) => {
-                let start = scratch.sweeps.starts[index];
-                let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
-                // The rotation of the solver does not lead to the final angle if a sweep has stopped the body or the
-                // body had a target. The body then makes the smallest rotation that leads to it.
-                let short = (body.angle - start.angle).to_turns().to_bits();
-                let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
-                let turn = if is_complete { solved } else { short };
-                Sweep { start: start.centre, end: body.centre, turn }
-            }
-        };
+        let sweep = made_motion(state, scratch, slot);
         MovedShape { shape, body: slot, sweep }
     }
 
@@ -174,11 +161,7 @@ impl MovedShape {
         let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
         match direction {
             Direction::Backwards => (at_end, Sweep { start: end, end: start, turn: turn.wrapping_neg() }),
-            Direction::Forwards if turn == 0 => (at_end, self.sweep),
-            Direction::Forwards => {
-                let back = Angle::from_turns(Fx::from_bits(turn.wrapping_neg()));
-                (at_end.rotated(Rot::from_angle(back)), self.sweep)
-            }
+            Direction::Forwards => (at_start(at_end, &self.sweep), self.sweep),
         }
     }
 }

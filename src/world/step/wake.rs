@@ -1,6 +1,7 @@
 use alloc::vec::Vec;
 
 use super::areas;
+use super::continuous;
 use super::narrow_phase::will_touch;
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::Scratch;
@@ -23,7 +24,10 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
             let (a, b) = state.bodies_of(pair);
             let Some(island) = a.island.or(b.island) else { continue };
             let wakes = match state.sensor_of(pair) {
-                None => will_touch(state, scratch.shapes.poses(), pair),
+                None => {
+                    // Speculative contacts foresee no rotation by a large part of a turn.
+                    will_touch(state, scratch.shapes.poses(), pair) || continuous::wakes(state, scratch, pair)
+                }
                 Some(_) => areas::wakes(state, scratch, pair),
             };
             if wakes {
