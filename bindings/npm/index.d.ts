@@ -1216,7 +1216,8 @@ export class Match extends Handle {
     /** Opens a match, or joins one through a `contact`. An option out of range throws `CONFIG` or `VALUE`. */
     constructor(options: MatchOptions);
     readonly inputBytes: number;
-    /** Requests to join a match through this participant. Discards a match in progress. */
+    /** Requests to join a match through this participant. Discards a match in progress, with its requests and
+     * events. */
     ask(contact: Uint8Array): void;
     /** Processes a packet that arrived from an address. Ignores packets that do not belong to the match, and packets of
      * more than 2048 bytes. */

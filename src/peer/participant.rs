@@ -340,9 +340,10 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Sends the request to join to this contact, for example if an earlier request was not answered. Discards a
-    /// session in progress; the new session has another [`PeerId`].
+    /// session in progress and its events; the new session has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
         self.failure = None;
+        self.events.clear();
         self.endpoint.ask(contact);
     }
 

@@ -33,9 +33,10 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
-    /// Number of ticks that have been played within the limits. Their work is not limited when they are played again,
-    /// because the first tick after a loaded state costs more.
+    /// Number of ticks that have been played within the limits. Their work is not limited when they are played again.
     admitted: u64,
+    /// Whether no tick was played since [`RawReplay::go`]. The first tick after a loaded state costs more.
+    is_loaded: bool,
     /// The verdict with which [`RawReplay::step`] failed. Further calls return it again.
     failed: Option<Verdict>,
 }
@@ -67,8 +68,17 @@ impl<'a, G: Game> RawReplay<'a, G> {
         check_bodies(&mut game, limits)?;
         let (limits, position) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
         let (length, inputs) = (ending.ticks, Vec::new());
-        let raw =
-            RawReplay { game, limits, position, encoded: None, inputs, length, admitted: 0, failed: None };
+        let raw = RawReplay {
+            game,
+            limits,
+            position,
+            encoded: None,
+            inputs,
+            length,
+            admitted: 0,
+            is_loaded: false,
+            failed: None,
+        };
         Ok((raw, ending))
     }
 
@@ -155,10 +165,16 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// Plays the tick whose inputs were read, by calling `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
-        let RawReplay { game, inputs, limits, position, admitted, .. } = self;
-        let unlimited = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..limits.clone() };
-        let limits = if position.tick < *admitted { &unlimited } else { &*limits };
-        let done = play_within(game, inputs, limits, &mut position.work, step)?;
+        let RawReplay { game, inputs, limits, position, admitted, is_loaded, .. } = self;
+        let is_first = core::mem::take(is_loaded);
+        // A state of a file may come from anyone, so its first tick is limited as well.
+        let fresh = world_of(game).filter(|_| is_first).map_or(0, World::fresh_cache_work);
+        let tick_work = limits.tick_work.saturating_add(fresh);
+        let limits = match position.tick < *admitted {
+            true => Limits { tick_work: u64::MAX, total_work: u64::MAX, ..limits.clone() },
+            false => Limits { tick_work, ..limits.clone() },
+        };
+        let done = play_within(game, inputs, &limits, &mut position.work, step)?;
         position.tick += 1;
         if position.tick == *admitted + 1 {
             *admitted += 1;
@@ -196,6 +212,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
     pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.game.load(save);
         self.position = position;
+        self.is_loaded = true;
         self.encoded = None;
         self.inputs.clear();
         self.failed = None;

@@ -228,12 +228,12 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress.
+    /// Requests to join through a contact at the next [`update`](Endpoint::update). Discards a session and its events.
     /// The new session has another incarnation, but the same key, role, delay bounds and number of guessed ticks.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
-        // The contact may be in another match, with other peers. In any case the contact sends the addresses of its
-        // peers.
+        self.events.clear();
+        // The contact may be in another match, with other peers. It sends the addresses of its peers.
         (self.routes, self.contacts, self.guests) = Default::default();
         // Each attempt has another nonce, which tells the contact to begin a new handshake as well.
         self.attempts = self.attempts.wrapping_add(1);

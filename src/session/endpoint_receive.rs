@@ -174,10 +174,10 @@ impl Endpoint {
             Some((session.ok()?, start.addresses, start.tick, start.state))
         });
         let Some((session, addresses, tick, bytes)) = session else {
-            self.events.push_back(JoinEvent::BadState);
             if let Some(contact) = self.contact {
                 self.ask(contact);
             }
+            self.events.push_back(JoinEvent::BadState);
             return;
         };
         let mut session = Box::new(session);

@@ -1,5 +1,7 @@
 //! A peer that leaves a match for another one.
 
+use std::time::Duration;
+
 use lockstep2d::peer::{Network, PeerOptions};
 use lockstep2d::session::Status;
 
@@ -22,4 +24,19 @@ fn a_peer_that_changes_the_match_has_no_replay() {
     assert_eq!((table.peer(1).status(), table.replays[1].len()), (Some(Status::Playing), taken));
     let end = table.peers[1].take().expect("valid").finish().expect("valid");
     assert!(end.ticks > 60 && end.replay.is_empty());
+}
+
+/// Events are in the queue until the program fetches them.
+#[test]
+fn no_event_of_a_match_is_delivered_after_it() {
+    let mut table = Table::new(10, 0);
+    table.host(PeerOptions { start_with: 1, ..PeerOptions::lockstep() });
+    let now = table.network.time() + Duration::from_millis(1);
+    let peer = table.peer(0);
+    peer.update(now).expect("valid");
+    peer.leave();
+    peer.update(now + Duration::from_millis(1)).expect("valid");
+    assert!(peer.next_event().is_some(), "the match has begun");
+    peer.ask(Network::address(2));
+    assert_eq!(peer.next_event(), None);
 }

@@ -1,13 +1,20 @@
 //! A seek starts from a stored state. A keyframe file that is invalid or belongs to another replay is not used.
 
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::codec;
+use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::replay::{KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, SeekError};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::replay::{
+    KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, LimitKind, Limits, Recording, SeekError, Timeline,
+    TimelineOptions, Verdict,
+};
+use lockstep2d::world::Command;
 
-use crate::counter::{Counter, inputs_at};
+use crate::counter::{Counter, add, inputs_at};
 use crate::record;
-use crate::timeline::{at, hashes, open, recorded};
+use crate::timeline::{at, hashes, hashes_and_works, open, recorded};
 
 #[test]
 fn keyframes_of_a_file_spare_the_way() {
@@ -47,6 +54,64 @@ fn keyframes_of_an_interval_within_blocks_are_those_at_checkpoints() {
     let bytes = timeline.keyframes_to_bytes();
     timeline.use_keyframes(&bytes).unwrap();
     assert_eq!(timeline.keyframes().collect::<Vec<_>>(), [0, 20, 40, 60, 80, 100]);
+}
+
+fn every_20_ticks() -> TimelineOptions {
+    TimelineOptions { interval: 20, ..TimelineOptions::default() }
+}
+
+/// Seeks to each keyframe of a file and plays the tick after it. The limit is the work of this tick without a seek.
+fn assert_keyframes_need_no_more_work(file: &[u8]) {
+    let (hashes, works) = hashes_and_works(file);
+    let mut first = open::<Sandbox>(file, 20, 64 << 20);
+    first.play_all().unwrap();
+    let bytes = first.keyframes_to_bytes();
+    for tick in (20..works.len()).step_by(20) {
+        let limits = Limits { tick_work: works[tick], ..Limits::default() };
+        let mut timeline = Timeline::<Sandbox>::open(file, &every_20_ticks(), &limits).unwrap();
+        timeline.use_keyframes(&bytes).unwrap();
+        let next = u64::try_from(tick + 1).unwrap();
+        assert_eq!(timeline.seek(next), Ok(()), "tick {tick}");
+        assert_eq!((timeline.game().state_hash(), timeline.simulated()), (hashes[tick + 1], 1));
+        // A second seek loads the keyframe again.
+        timeline.seek(0).unwrap();
+        assert_eq!(timeline.seek(next), Ok(()), "tick {tick}");
+    }
+}
+
+/// The tick after a keyframe searches all pairs. `verify` never searches that many in one tick of a game that adds its
+/// shapes one after the other.
+#[test]
+fn a_tick_after_a_keyframe_is_within_the_limits_of_verify() {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).unwrap());
+    let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 20).unwrap();
+    for tick in 0..200 {
+        let body = |def: BodyDef, y| BodyDef { position: Vec2::new(Fx::from(tick), Fx::from(y)), ..def };
+        let spawn = |body| Command::Spawn { body, shapes: vec![ball.clone()] };
+        let command = if tick % 4 == 0 { body(BodyDef::dynamic(), 1) } else { body(BodyDef::fixed(), 0) };
+        recording.step(&[vec![spawn(command)]]).unwrap();
+    }
+    assert_keyframes_need_no_more_work(&recording.finish().unwrap());
+    for scene in ["game", "ragdoll", "rain", "waterworks"] {
+        assert_keyframes_need_no_more_work(&recorded(scene, 200, 20));
+    }
+}
+
+/// Keyframes of a file replace the ticks before them. Nobody has checked the work of these ticks.
+#[test]
+fn keyframes_lift_no_limit() {
+    let file = record(60, 10, |tick| add(if matches!(tick, 5 | 40) { 100 } else { 1 }, 1));
+    let mut first = open::<Counter>(&file, 20, 1 << 20);
+    first.play_all().unwrap();
+    let bytes = first.keyframes_to_bytes();
+    let limits = Limits { tick_work: 50, ..Limits::default() };
+    let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
+    for (tick, then) in [(35, 10), (40, 41)] {
+        let mut timeline = Timeline::<Counter>::open(&file, &every_20_ticks(), &limits).unwrap();
+        timeline.use_keyframes(&bytes).unwrap();
+        timeline.seek(tick).unwrap();
+        assert_eq!(timeline.seek(then), Err(SeekError::Replay(exceeded.clone())));
+    }
 }
 
 /// Writes a keyframe file as `docs/FORMAT.md` specifies, without the library.

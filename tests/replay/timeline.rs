@@ -222,7 +222,7 @@ fn falling_balls() -> Vec<u8> {
 }
 
 /// State hashes, and work of each tick.
-fn hashes_and_works(file: &[u8]) -> (Vec<StateHash>, Vec<u64>) {
+pub(crate) fn hashes_and_works(file: &[u8]) -> (Vec<StateHash>, Vec<u64>) {
     let mut replay = RawReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
     let (mut hashes, mut works) = (vec![replay.game().state_hash()], vec![]);
     let mut before = replay.work();

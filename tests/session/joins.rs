@@ -254,6 +254,26 @@ fn another_contact_can_be_asked() {
     net.assert_all_play();
 }
 
+/// The peer asks again before its game has fetched the state.
+#[test]
+fn a_peer_that_asks_again_gets_no_event_of_the_discarded_match() {
+    let host = Endpoint::host(config(), identity(0), 1).expect("valid");
+    let guest = Endpoint::join(config(), identity(1), Role::Player { seats: 1 }, address(1)).expect("valid");
+    let (mut ends, mut now) = ([host, guest], 0);
+    while ends[1].session().is_none() {
+        now += 10 * MS;
+        for own in 0..2 {
+            ends[own].update(now);
+            ends[own].offer_state(0, vec![1]);
+            while let Some((_, packet)) = ends[own].next_packet() {
+                ends[1 - own].receive(now, address(own as u8 + 1), &packet);
+            }
+        }
+    }
+    ends[1].ask(address(1));
+    assert_eq!(ends[1].next_event(), None);
+}
+
 #[test]
 fn an_incarnation_of_somebody_else_is_refused() {
     let mut net = Net::new(10 * MS, 0, 100);

@@ -33,10 +33,13 @@ typedef int32_t ls2d_status;
 typedef uint32_t ls2d_handle;
 
 /* LS2D_FX converts a whole number to ls2d_fx. LS2D_FX_RATIO is the quotient of two whole numbers, rounded towards zero.
+ * The quotient has to be less than 2^31, and the denominator at most 2^31; the macro uses its arguments several times.
  * With `| 0`, a float does not compile; without it, the conversion to int64_t would truncate the float silently. The
- * denominator is converted as well, because a division by an unsigned number would be unsigned. */
-#define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
-#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / (int64_t)((denominator) | 0)))
+ * arguments are converted before the division, because a division by an unsigned number would be unsigned. */
+#define LS2D_WHOLE(whole) ((int64_t)((whole) | 0))
+#define LS2D_FX(whole) ((ls2d_fx)(LS2D_WHOLE(whole) * 4294967296))
+#define LS2D_QUOTIENT(n, d) ((ls2d_fx)(LS2D_FX((n) / (d)) + LS2D_FX((n) % (d)) / (d)))
+#define LS2D_FX_RATIO(numerator, denominator) LS2D_QUOTIENT(LS2D_WHOLE(numerator), LS2D_WHOLE(denominator))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)LS2D_FX_RATIO(whole, 360))
 /* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */
@@ -607,8 +610,8 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Two shapes with the same positive group always collide, two shapes with the same negative group never. 0 is
-     * no group. */
+    /* Two shapes with the same positive group always collide, two shapes with the same negative group never do. 0
+     * is no group. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
@@ -649,9 +652,9 @@ typedef struct ls2d_joint_def {
     uint32_t kind;
     /* `LS2D_JOINT_` flags. */
     uint32_t flags;
-    /* Teeth of A's wheel of a gear. */
+    /* Number of teeth of a gear's wheel on body A. */
     int32_t teeth_a;
-    /* Teeth of B's wheel of a gear. */
+    /* Number of teeth of a gear's wheel on body B. */
     int32_t teeth_b;
     /* Angle of the joint's frame on A, in the frame of body A. */
     ls2d_angle angle_a;
@@ -964,11 +967,13 @@ typedef struct ls2d_match_config {
     uint32_t delay_min;
     /* Largest delay of inputs in ticks. */
     uint32_t delay_max;
-    /* Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1 with
-     * guessed inputs, otherwise 6 or, with a given `check_interval`, the largest of its divisors up to 8. */
+    /* Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1
+     * with guessed inputs; in lockstep, the largest divisor of `check_interval` up to 8, or 6 if `check_interval`
+     * is 0. */
     uint32_t save_interval;
     /* Interval in ticks at which states are compared: a multiple of `save_interval`. 0, the default, stands for
-     * the interval of a Rust `Peer`: the largest multiple up to 10, or `save_interval` if it is more than 10. */
+     * the interval of a Rust `Peer`: the largest multiple of `save_interval` up to 10, or `save_interval` if it is
+     * more than 10. */
     uint32_t check_interval;
     /* Number of ticks that may be played beyond the last final tick. */
     uint32_t history;
@@ -1032,7 +1037,8 @@ uint32_t ls2d_api_version(void);
 uint32_t ls2d_semantics(void);
 
 /* Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
- * too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure. */
+ * too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure, and
+ * leaves the text unchanged. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Every later use of its handle is an error. */
@@ -1546,7 +1552,8 @@ ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offe
 /* Joins a match through the participant at the address `contact`, as a spectator if `own_seats` is 0. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
-/* Requests to join a match through the participant at the address `contact`. Discards a match in progress. */
+/* Requests to join a match through the participant at the address `contact`. Discards a match in progress, with
+ * its requests and events. Packets that were not fetched are still sent. */
 ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
 
 /* Processes a packet that arrived from the address `from`. `now` is a time in microseconds that never decreases. */
@@ -1560,9 +1567,9 @@ ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
 /* Issues the inputs of this peer's seats, in order of the seats, and plays a tick if possible: the next requests
  * then contain `LS2D_REQUEST_ADVANCE`. Writes 1 to `issued` if the inputs were issued; otherwise the same inputs
- * may be passed again. Issued inputs count for one tick, so clear recorded key presses then. While the input delay
- * grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of one more tick before the next
- * tick is played. For a peer without seats, `size` is 0. */
+ * may be passed again. Issued inputs count for one tick, so clear recorded key presses when the inputs were
+ * issued. While the input delay grows, `ls2d_match_is_due` remains 1, and each further call takes the inputs of
+ * one more tick before the next tick is played. For a peer without seats, `size` is 0. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Fulfil requests in order before the next `ls2d_match_advance`. For `LS2D_REQUEST_ADVANCE`,
@@ -1606,8 +1613,8 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 ls2d_status ls2d_match_leave(uint32_t handle);
 
 /* Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
- * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be taken
- * back: decide by a state of a confirmed tick (`ls2d_match_ticks`). */
+ * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
+ * withdrawn, so base it on the state of a confirmed tick (`ls2d_match_ticks`). */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on:

@@ -43,10 +43,13 @@ typedef int32_t ls2d_status;
 typedef uint32_t ls2d_handle;
 
 /* LS2D_FX converts a whole number to ls2d_fx. LS2D_FX_RATIO is the quotient of two whole numbers, rounded towards zero.
+ * The quotient has to be less than 2^31, and the denominator at most 2^31; the macro uses its arguments several times.
  * With `| 0`, a float does not compile; without it, the conversion to int64_t would truncate the float silently. The
- * denominator is converted as well, because a division by an unsigned number would be unsigned. */
-#define LS2D_FX(whole) ((ls2d_fx)((int64_t)((whole) | 0) * 4294967296))
-#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)(LS2D_FX(numerator) / (int64_t)((denominator) | 0)))
+ * arguments are converted before the division, because a division by an unsigned number would be unsigned. */
+#define LS2D_WHOLE(whole) ((int64_t)((whole) | 0))
+#define LS2D_FX(whole) ((ls2d_fx)(LS2D_WHOLE(whole) * 4294967296))
+#define LS2D_QUOTIENT(n, d) ((ls2d_fx)(LS2D_FX((n) / (d)) + LS2D_FX((n) % (d)) / (d)))
+#define LS2D_FX_RATIO(numerator, denominator) LS2D_QUOTIENT(LS2D_WHOLE(numerator), LS2D_WHOLE(denominator))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)LS2D_FX_RATIO(whole, 360))
 /* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */

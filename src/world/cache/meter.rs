@@ -49,7 +49,7 @@ impl WorkMeter {
 
     /// Counts a search for pairs. Returns the number of new pairs that the remaining budget covers.
     pub(crate) fn spend_search(&mut self, comparisons: u64) -> usize {
-        self.spend(comparisons / COMPARED_PER_WORK);
+        self.spend(search_work(comparisons));
         let pairs = self.max.saturating_sub(self.spent) / (NEW_PAIR_WORK + NARROW_PHASE_WORK);
         usize::try_from(pairs).unwrap_or(usize::MAX)
     }
@@ -61,7 +61,7 @@ impl WorkMeter {
 
     /// Counts a visit of all sleeping contacts.
     pub(crate) fn spend_visit(&mut self, sleeping_contacts: &[Contact]) {
-        self.spend(u64::try_from(sleeping_contacts.len() / VISITED_PER_WORK).unwrap_or(u64::MAX));
+        self.spend(visit_work(sleeping_contacts));
     }
 
     pub(crate) fn is_exhausted(&self) -> bool {
@@ -71,6 +71,16 @@ impl WorkMeter {
     pub(crate) fn spent(&self) -> u64 {
         self.spent
     }
+}
+
+/// Work units of a search for pairs.
+pub(crate) fn search_work(comparisons: u64) -> u64 {
+    comparisons / COMPARED_PER_WORK
+}
+
+/// Work units of a visit of all sleeping contacts.
+pub(crate) fn visit_work(sleeping_contacts: &[Contact]) -> u64 {
+    u64::try_from(sleeping_contacts.len() / VISITED_PER_WORK).unwrap_or(u64::MAX)
 }
 
 /// Work units of the pairs in one pass of the solver.

@@ -1,8 +1,9 @@
 //! The cost of a tick, to limit the computing time of untrusted input.
 
+use crate::collision::Moved;
 use crate::solver::SolverSettings;
 use crate::world::World;
-use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work};
+use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work, search_work, visit_work};
 use crate::world::state::State;
 
 /// Work units of a tick of an empty world, which takes some microseconds.
@@ -61,6 +62,13 @@ impl World {
         let State { bodies, shapes, joints, islands, .. } = &*self.state;
         let slots = [bodies.slot_count(), shapes.slot_count(), joints.slot_count(), islands.slot_count()];
         u64::try_from(slots.iter().sum::<usize>() / SCANNED_PER_WORK).unwrap_or(u64::MAX)
+    }
+
+    /// Largest work that the next tick counts in addition if the world was decoded: its caches are new, so the tick
+    /// searches all pairs and visits all sleeping contacts.
+    pub(crate) fn fresh_cache_work(&self) -> u64 {
+        let search = search_work(self.scratch.shapes.broad_phase().comparisons(Moved::All));
+        search.saturating_add(visit_work(&self.state.sleeping_contacts))
     }
 
     /// Starts to count work whose amount is known only after it is done, such as sweeps of fast bodies, the search for

@@ -153,11 +153,14 @@ api! {
         handle.set(table::add(Match::new(Endpoint::join(config, identity, role, contact)?))?)
     }
 
-    /// Requests to join a match through the participant at the address `contact`. Discards a match in progress.
+    /// Requests to join a match through the participant at the address `contact`. Discards a match in progress, with
+    /// its requests and events. Packets that were not fetched are still sent.
     fn ls2d_match_ask(handle: u32, contact: In<'_, u8>, contact_size: usize) {
         let contact = address(&contact, contact_size)?;
         with(handle, |game: &mut Match| {
             game.endpoint.ask(contact);
+            game.request = None;
+            game.events.clear();
             Ok(())
         })
     }

@@ -132,6 +132,37 @@ fn inputs_whose_result_cannot_be_written_are_not_issued() {
     done(ls2d_free(game));
 }
 
+/// The first event and a request that does not fit stay in the match until they are fetched.
+#[cfg(feature = "lockstep")]
+#[test]
+fn nothing_of_a_discarded_match_is_delivered() {
+    let (mut game, mut due, mut size) = (0, 0, 0);
+    let config = Config { start_with: 1, ..Config::new(0, 1) };
+    let config = RawMatchConfig { own_seats: 1, ..RawMatchConfig::of(&config) };
+    done(ls2d_match_host(In::of(&config), In::null(), 0, Out::of(&mut game)));
+    let mut event = RawMatchEvent::new(EVENT_STATUS);
+    let mut next_event = || ls2d_match_next_event(game, Out::of(&mut event));
+    let mut request = RawRequest { kind: 0, tick: 0, absent: 0, guessed: 0 };
+    let mut next_request =
+        || ls2d_match_next_request(game, Out::of(&mut request), Out::null(), 0, Out::of(&mut size));
+    let now = (0..1000).map(|step| step * 1000).find(|&now| {
+        done(ls2d_match_update(game, now));
+        while next_request() == Status::Ok as i32 {}
+        done(ls2d_match_is_due(game, now, Out::of(&mut due)));
+        due == 1
+    });
+    let now = now.unwrap();
+    done(ls2d_match_advance(game, now, In::all(&[7]), 1, Out::null()));
+    // The match has begun, and its player leaves it: these are several events.
+    done(ls2d_match_leave(game));
+    done(ls2d_match_update(game, now + 1000));
+    let kept = std::iter::repeat_with(&mut next_request).find(|status| *status != Status::Ok as i32);
+    assert_eq!((kept, next_event()), (Some(Status::Buffer as i32), Status::Ok as i32));
+    done(ls2d_match_ask(game, In::all(&[2]), 1));
+    assert_eq!((next_request(), next_event()), (Status::None as i32, Status::None as i32));
+    done(ls2d_free(game));
+}
+
 #[test]
 fn a_name_with_a_zero_is_refused() {
     let mut world = 0;
