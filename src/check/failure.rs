@@ -49,8 +49,9 @@ pub struct Failure {
     /// The finding in the minimised replay.
     pub minimised: Finding,
     /// Replay file with the fewest ticks and inputs that the search found within the budget.
-    /// [`check_replay`](super::check_replay) reproduces the failure, unless the failure is random or a replay cannot
-    /// represent the setup, inputs or claims. If the failure is random, the checkpoints of the replay may be wrong too.
+    /// [`check_replay`](super::check_replay) with the options of the check, but from tick 0, reproduces the failure,
+    /// unless the failure is random or a replay cannot represent the setup, inputs or claims. If the failure is random,
+    /// the checkpoints of the replay may be wrong too.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,

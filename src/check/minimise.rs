@@ -7,7 +7,7 @@ use super::checker::{Checked, Checker, another};
 use super::failure::Failure;
 use super::finding::{Fault, Finding};
 use super::log::{Inputs, Log};
-use super::options::{CheckOptions, Depths, Variant};
+use super::options::{CheckOptions, Variant};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
@@ -28,6 +28,7 @@ fn run_counted<G: Game>(
     options: &CheckOptions,
     simulated: &mut u64,
 ) -> Result<Checked, Box<Finding>> {
+    let options = &options.for_ticks(log.len().min(options.to));
     let refused = |why| Box::new(Finding::new(Variant::Again, Fault::Refused { why }, 0));
     let mut checker = Checker::<G>::new(setup, options).map_err(|error| refused(error.why))?;
     let ticks = log.ticks.iter().zip(0..options.to).map(|(inputs, _)| inputs);
@@ -138,11 +139,8 @@ struct Search<'s, G: Game> {
 impl<G: Game> Search<'_, G> {
     fn begin(&mut self, log: &Log<G>, variant: Variant, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
         let variants = if variant == Variant::Again { [variant; AGAIN].to_vec() } else { [variant].to_vec() };
-        self.options =
-            CheckOptions { variants, from: 0, every: 1, depths: Depths::Each, ..self.options.clone() };
-        if finding.variant != Variant::RolledBack || variant != finding.variant {
-            self.options.depths = Depths::InTurn;
-        }
+        // All other options stay, so that a later check with the caller's options finds the fault in the minimised log.
+        self.options = CheckOptions { variants, from: 0, ..self.options.clone() };
         self.need = 1;
         let of_cut = self.attempt(first(log, finding.played).ticks, log);
         // If the failure is random, the whole log may fail more often than a log that was cut after the failing tick.

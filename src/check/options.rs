@@ -104,6 +104,10 @@ impl fmt::Display for Variant {
     }
 }
 
+/// Maximum length of a log in which every tick with rollbacks plays all of them, because they would not all have their
+/// turn. Minimised logs are often this short.
+const SHORT_TICKS: u64 = 24;
+
 /// The rollback depths of [`Variant::RolledBack`].
 ///
 /// ```
@@ -119,7 +123,8 @@ impl fmt::Display for Variant {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
     /// Each tick that [`CheckOptions::every`] selects tests the next combination of depth and prediction. For depths of
-    /// 1 to 8 ticks, this costs about eight steps per tick.
+    /// 1 to 8 ticks, this costs about eight steps per tick. In logs of at most 24 ticks, [`check`](super::check) and
+    /// [`check_replay`](super::check_replay) play all combinations, as with [`Depths::Each`].
     #[default]
     InTurn,
     /// All combinations at each of these ticks. For depths of 1 to 8 ticks, this costs 180 steps per tick.
@@ -209,6 +214,12 @@ impl CheckOptions {
     #[must_use]
     pub fn every(self, ticks: u64) -> Self {
         CheckOptions { every: ticks.max(1), ..self }
+    }
+
+    /// The options for a log of this number of ticks.
+    pub(super) fn for_ticks(&self, ticks: u64) -> Self {
+        let depths = if ticks <= SHORT_TICKS { Depths::Each } else { self.depths };
+        CheckOptions { depths, ..self.clone() }
     }
 
     pub(super) fn is_due(&self, tick: u64) -> bool {

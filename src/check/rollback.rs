@@ -45,14 +45,11 @@ impl<G: Game> Past<G> {
             return Ok(());
         }
         let turn = now.tick / now.options.every.max(1);
-        for (depth, guess) in rollbacks(now.options.depths, depth_max, turn) {
-            let last = self.moments.len() - 1;
-            // Near the start of the log, there are fewer earlier states.
-            let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
-            if depth > 0 {
-                *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
-                self.roll_back(game, last - depth as usize, depth, guess, now)?;
-            }
+        let last = self.moments.len() - 1;
+        let earlier = u32::try_from(last).unwrap_or(u32::MAX);
+        for (depth, guess) in rollbacks(now.options.depths, depth_max, earlier, turn) {
+            *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
+            self.roll_back(game, last - depth as usize, depth, guess, now)?;
         }
         Ok(())
     }
@@ -93,15 +90,17 @@ impl<G: Game> Past<G> {
     }
 }
 
-/// The rollbacks at a tick. `turn` counts the ticks with rollbacks.
-fn rollbacks(depths: Depths, depth_max: u32, turn: u64) -> Vec<Rollback> {
+/// The rollbacks at a tick after `earlier` stored states, fewer than `depth_max` near the start of the log. `turn`
+/// counts the ticks with rollbacks.
+fn rollbacks(depths: Depths, depth_max: u32, earlier: u32, turn: u64) -> Vec<Rollback> {
     let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
     match depths {
-        Depths::Each => (1..=depth_max).flat_map(each).collect(),
+        Depths::Each => (1..=depth_max.min(earlier)).flat_map(each).collect(),
         Depths::InTurn => {
             let depth = (1..=depth_max).nth(remainder(turn, depth_max));
             let guess = Guess::ALL[remainder(turn / u64::from(depth_max.max(1)), 3)];
-            depth.map(|depth| (depth, guess)).into_iter().collect()
+            let possible = depth.map(|depth| depth.min(earlier)).filter(|depth| *depth > 0);
+            possible.map(|depth| (depth, guess)).into_iter().collect()
         }
     }
 }
@@ -121,12 +120,24 @@ mod tests {
         let name = |(depth, guess): Rollback| (depth, Guess::ALL.iter().position(|one| *one == guess));
         for depth_max in 1..=9 {
             let turns = 0..3 * u64::from(depth_max);
-            let in_turn: BTreeSet<_> =
-                turns.flat_map(|turn| rollbacks(Depths::InTurn, depth_max, turn)).map(name).collect();
-            let each: BTreeSet<_> = rollbacks(Depths::Each, depth_max, 5).into_iter().map(name).collect();
+            let in_turn = turns.flat_map(|turn| rollbacks(Depths::InTurn, depth_max, depth_max, turn));
+            let in_turn: BTreeSet<_> = in_turn.map(name).collect();
+            let each = rollbacks(Depths::Each, depth_max, depth_max, 5);
+            let each: BTreeSet<_> = each.into_iter().map(name).collect();
             assert_eq!(in_turn, each);
             assert_eq!(each.len(), 3 * depth_max as usize);
         }
-        assert!(rollbacks(Depths::InTurn, 0, 5).is_empty());
+        assert!(rollbacks(Depths::InTurn, 0, 8, 5).is_empty());
+    }
+
+    #[test]
+    fn near_the_start_rollbacks_are_less_deep() {
+        let depths = |depths, earlier| {
+            let depths = rollbacks(depths, 8, earlier, 5).into_iter().map(|(depth, _)| depth);
+            depths.collect::<Vec<_>>()
+        };
+        assert_eq!((depths(Depths::InTurn, 8), depths(Depths::InTurn, 2)), (vec![6], vec![2]));
+        assert_eq!(depths(Depths::Each, 2), [1, 1, 1, 2, 2, 2]);
+        assert!(depths(Depths::InTurn, 0).is_empty() && depths(Depths::Each, 0).is_empty());
     }
 }

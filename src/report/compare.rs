@@ -117,9 +117,12 @@ pub(super) fn survey<'a, G: Game>(
     }
     if let [SideEvidence { claims: Some(a), ticks, .. }, SideEvidence { claims: Some(b), ticks: other, .. }] =
         &known
-        && ticks == other
     {
-        found.claims = differences(&fields(a)?, &fields(b)?);
+        if ticks == other {
+            found.claims = differences(&fields(a)?, &fields(b)?);
+        } else if found.setup.is_empty() {
+            found.lengths = Some([*ticks, *other]);
+        }
     }
     Ok((known, found))
 }

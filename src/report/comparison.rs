@@ -191,6 +191,8 @@ pub struct Comparison {
     pub input: Option<InputDifference>,
     /// Differences between the claims of two complete replays of the same length. The states may be equal.
     pub claims: Vec<Difference>,
+    /// Numbers of ticks of A and B, if both are complete replays with the same setup and their lengths differ.
+    pub lengths: Option<[u64; 2]>,
     /// A and B compared with the rerun.
     pub trajectories: [Trajectory; 2],
     /// Number of ticks simulated in the rerun.
@@ -224,6 +226,7 @@ impl Comparison {
             setup: Vec::new(),
             input: None,
             claims: Vec::new(),
+            lengths: None,
             trajectories: Default::default(),
             simulated: None,
             blame: Blame::Unknown,
@@ -238,12 +241,14 @@ impl Comparison {
         }
     }
 
-    /// Whether no difference was found.
+    /// Whether no difference was found. A replay without a trailer, or a report, may be the beginning of the other
+    /// file.
     #[must_use]
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()
             && self.input.is_none()
             && self.claims.is_empty()
+            && self.lengths.is_none()
             && self.first_different.is_none()
             && self.subjects.is_empty()
             && self.trajectories.iter().all(|trajectory| trajectory.diverges.is_none())

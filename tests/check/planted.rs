@@ -16,8 +16,7 @@ fn failure(mistake: Mistake) -> Failure {
         other => panic!("{mistake:?}: {other:?}"),
     };
     assert!(failure.failed.0 >= 3 && failure.failed.1 == 4, "{failure}");
-    let only =
-        CheckOptions { depths: Depths::Each, ..CheckOptions::default().only(&[failure.minimised.variant]) };
+    let only = CheckOptions::default().only(&[failure.minimised.variant]);
     if failure.minimised.variant != Variant::Recorded {
         let again = (0..8).find_map(|_| check_replay::<Toy>(&failure.replay, &only).err()).unwrap();
         assert_eq!(again.failure().unwrap().minimised.variant, failure.minimised.variant, "{again}");
@@ -98,6 +97,42 @@ fn a_memory_that_load_leaves_is_found() {
     let failure = failure(Mistake::StaleMemory);
     assert!(matches!(found(&failure), (Variant::RolledBack | Variant::Reloaded, &Fault::Hash)), "{failure}");
     assert!(fields(&failure)[0].starts_with("state.hits"), "{failure}");
+}
+
+/// Checks a log and then its minimised replay, with the same options.
+fn check_twice(mistake: Mistake, inputs: &[Vec<u8>], options: &CheckOptions) {
+    let error = check::<Toy>(&mistake, inputs, options).unwrap_err();
+    let failure = error.failure().unwrap();
+    let what = format!("{mistake:?}, every {}, {} ticks: {failure}", options.every, inputs.len());
+    assert_eq!(failure.failed, (4, 4), "{what}");
+    let again = check_replay::<Toy>(&failure.replay, options).expect_err(&what);
+    let again = again.failure().unwrap();
+    assert_eq!(again.finding.variant, failure.minimised.variant, "{what}");
+    assert_eq!(again.ticks, failure.ticks, "{what}");
+}
+
+#[test]
+fn a_minimised_replay_fails_with_the_options_of_its_check() {
+    let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
+    for every in [1, 5, 10] {
+        for (mistake, variant) in [
+            (Mistake::SaveLacksField, Variant::Reloaded),
+            (Mistake::BothLackField, Variant::Reloaded),
+            (Mistake::LoadKeepsCache, Variant::RolledBack),
+        ] {
+            check_twice(mistake, &inputs, &CheckOptions::default().every(every).only(&[variant]));
+        }
+    }
+}
+
+/// Only a wrong prediction reveals this fault. The log is too short to play each prediction in its turn.
+#[test]
+fn a_short_log_is_rolled_back_with_every_prediction() {
+    let inputs = [[1, 6], [0, 0], [0, 0], [1, 6]].map(Vec::from);
+    for depths in [Depths::InTurn, Depths::Each] {
+        let options = CheckOptions { depths, ..CheckOptions::default().only(&[Variant::RolledBack]) };
+        check_twice(Mistake::StaleMemory, &inputs, &options);
+    }
 }
 
 #[test]

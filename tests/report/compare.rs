@@ -4,12 +4,12 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Difference, Value};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
-use lockstep2d::replay::Limits;
+use lockstep2d::replay::{Limits, Recording};
 use lockstep2d::report::{Blame, Comparison, DesyncReport, Evidence, Side, bisect, compare};
 use lockstep2d::world::BodyField;
 
 use crate::sweep;
-use crate::yard::{BODIES, Flip, Peer, When, Yard};
+use crate::yard::{BODIES, Flip, Peer, When, Yard, inputs_at};
 
 const CHECKPOINT: u64 = 10;
 
@@ -189,6 +189,29 @@ fn peers_that_agree_are_equal() {
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }
 
+#[test]
+fn complete_replays_of_different_lengths_are_not_equal() {
+    let complete = |ticks| {
+        let mut recording = Recording::<Yard>::start(&5, 25).unwrap();
+        (0..ticks).for_each(|tick| recording.step(&[0, 1, 2].map(|player| inputs_at(tick, player))).unwrap());
+        Evidence::Replay(recording.finish().unwrap())
+    };
+    let (short, long) = (complete(40), complete(60));
+    let mut peer = Peer::new(5, None);
+    (0..40).for_each(|_| peer.advance());
+    let so_far = evidence(&peer.report(0, 25, Vec::new()));
+    let limits = Limits::default();
+    for found in [compared(&long, &short), bisect::<Yard>(&long, Some(&short), &limits).unwrap()] {
+        assert_eq!((found.lengths, found.is_equal()), (Some([60, 40]), false), "{found:?}");
+        assert_eq!((found.first_different, found.blame), (None, Blame::Nobody), "{found:?}");
+    }
+    assert_eq!(compared(&short, &long).lengths, Some([40, 60]));
+    // The replay in a report has no trailer, so it may be the beginning of a longer match.
+    for found in [compared(&long, &so_far), compared(&short, &so_far), compared(&short, &short)] {
+        assert_eq!((found.lengths, found.is_equal()), (None, true), "{found:?}");
+    }
+}
+
 /// A replay has checkpoints, but no states: the comparison finds neither the tick nor the fields.
 #[test]
 fn replays_tell_who_diverged_between_which_checkpoints() {
@@ -241,9 +264,9 @@ fn other_inputs_and_other_setups_are_named() {
     let mut peers = [0, 1].map(|_| Peer::new(3, None));
     (0..40).for_each(|_| peers.iter_mut().for_each(Peer::advance));
     let replay = peers[0].replay();
-    let mut other = lockstep2d::replay::Recording::<Yard>::start(&3, 25).unwrap();
+    let mut other = Recording::<Yard>::start(&3, 25).unwrap();
     for tick in 0..40 {
-        let mut inputs = [0, 1, 2].map(|player| crate::yard::inputs_at(tick, player));
+        let mut inputs = [0, 1, 2].map(|player| inputs_at(tick, player));
         inputs[2] ^= u8::from(tick >= 33);
         other.step(&inputs).unwrap();
     }

@@ -121,6 +121,29 @@ fn other_claims_are_a_difference() {
 }
 
 #[test]
+fn a_trimmed_copy_is_a_difference() {
+    let folder = Folder::new("diff-lengths");
+    let (whole, copy) = (folder.write("whole", &replay(35)), folder.path("copy"));
+    assert_eq!(run(&["trim", &whole, "--ticks", "20", "-o", &copy]).exit, Exit::Success);
+    for command in ["diff", "bisect"] {
+        let outcome = run(&[command, &whole, &copy]);
+        assert_eq!(outcome.exit, Exit::NoMatch, "{command}: {}", outcome.out);
+        let lines = "different, equal states up to tick 20\n\
+                     played again up to tick 35: both kept to the rules\n\
+                     other lengths: A ends after tick 35, B after tick 20\n";
+        assert!(outcome.out.ends_with(lines), "{command}: {}", outcome.out);
+        let found: Value = serde_json::from_str(&run(&[command, "--json", &whole, &copy]).out).unwrap();
+        assert_eq!((&found["equal"], &found["lengths"]), (&json!(false), &json!([35, 20])));
+        let same: Value = serde_json::from_str(&run(&[command, "--json", &copy, &copy]).out).unwrap();
+        assert_eq!((&same["equal"], &same["lengths"]), (&json!(true), &Value::Null), "{command}");
+    }
+    // A file without a trailer may be the beginning of the other file.
+    let cut = folder.write("cut", &replay(35)[..replay(35).len() - 10]);
+    assert_eq!(run(&["diff", &whole, &cut]).exit, Exit::Success);
+    assert_eq!(run(&["diff", &cut, &copy]).exit, Exit::Success);
+}
+
+#[test]
 fn what_cannot_be_compared_is_trouble() {
     let folder = Folder::new("diff-trouble");
     let good = folder.write("good", &replay(5));

@@ -1,5 +1,6 @@
 //! `stress-saves`: a correct game passes, and the first difference of an incomplete save is reported.
 
+use std::collections::BTreeMap;
 use std::fs;
 
 use lockstep2d::hash::StateHash;
@@ -134,6 +135,71 @@ fn a_short_replay_that_fails_is_written() {
     let done = stress_saves(&folder, &fs::read(&short).unwrap(), &[]);
     assert_eq!(done.exit, Exit::NoMatch);
     assert!(done.out.contains("after tick 2"), "{}", done.out);
+}
+
+/// A game whose score depends on the number of wrongly predicted inputs.
+struct Corrected {
+    tick: u64,
+    points: u64,
+    seen: BTreeMap<u64, u8>,
+    corrections: u64,
+}
+
+impl Game for Corrected {
+    type Setup = ();
+    type Input = u8;
+    type Save = (u64, u64);
+
+    const RULES: RulesId = RulesId { name: "corrected", version: 1 };
+
+    fn new(_: &()) -> Result<Self, SetupError> {
+        Ok(Corrected { tick: 0, points: 0, seen: BTreeMap::new(), corrections: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        1
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, inputs: &[u8]) {
+        self.tick += 1;
+        let before = self.seen.insert(self.tick, inputs[0]);
+        self.corrections += u64::from(before.is_some_and(|before| before != inputs[0]));
+        self.points += self.corrections;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(&self.save())
+    }
+
+    fn save(&self) -> (u64, u64) {
+        (self.tick, self.points)
+    }
+
+    fn load(&mut self, save: &(u64, u64)) {
+        (self.tick, self.points) = *save;
+    }
+
+    fn work(&self, _: &[u8]) -> u64 {
+        1
+    }
+}
+
+#[test]
+fn a_short_replay_fails_with_the_same_command() {
+    let folder = Folder::new("stress-again");
+    let mut recording = Recording::<Corrected>::start(&(), 10).unwrap();
+    (0..60).for_each(|tick| recording.step(&[u8::from(tick % 3 == 0)]).unwrap());
+    let (path, short) = (folder.write("a.replay", &recording.finish().unwrap()), folder.path("short.replay"));
+    let tool = Tool::<Corrected>::new();
+    let done = run_tool_of(&tool, &["stress-saves", &path, "--rollback", "-o", &short]);
+    assert!(done.out.contains(": 1 ticks that fail 4 times out of 4: rolled back by 1 tick"), "{}", done.out);
+    let again = run_tool_of(&tool, &["stress-saves", &short, "--rollback"]);
+    assert_eq!(again.exit, Exit::NoMatch, "{}", again.out);
+    assert!(again.out.contains("fails: rolled back by 1 tick after guessing"), "{}", again.out);
 }
 
 #[test]

@@ -31,6 +31,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> Json {
         "setup": fields(&found.setup),
         "input": input,
         "claims": fields(&found.claims),
+        "lengths": found.lengths,
         "explanation": explanation,
         "stage": found.stage.map(|stage| stage.name()),
         "tick": found.tick,

@@ -113,6 +113,9 @@ impl Text<'_> {
             write!(f, "\n{BAD}other claims{BAD:#}")?;
             self.lines(&self.found.claims, f)?;
         }
+        if let Some([a, b]) = self.found.lengths {
+            write!(f, "\n{BAD}other lengths{BAD:#}: A ends after tick {a}, B after tick {b}")?;
+        }
         let Some(input) = &self.found.input else {
             return Ok(());
         };
