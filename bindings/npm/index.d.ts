@@ -858,9 +858,10 @@ export interface MoverState {
     velocity?: Vec;
     /** The ground on which the character stands; undefined in the air. */
     ground?: MoverPlane | undefined;
-    /** Whether the character is inside a shape that is solid from one side only, and passes through until it has left
-     * the shape. */
-    isPassing?: boolean;
+    /** Whether the last move has brought the character from the air onto ground. */
+    hasLanded?: boolean;
+    /** Shapes solid from one side that the character overlaps and passes through until it has left them, at most 8. */
+    passing?: readonly ShapeId[];
 }
 export interface Moved {
     /** The new state, for the next call. */
@@ -874,9 +875,10 @@ export interface Moved {
         isOnGround: boolean;
         /** Whether the character is wedged between two slopes that are too steep to stand on. */
         isWedged: boolean;
-        /** Whether the character is inside a shape that is solid from one side only, and passes through until it has
-         * left the shape. */
-        isPassing: boolean;
+        /** Whether this move has brought the character from the air onto ground. */
+        hasLanded: boolean;
+        /** Shapes solid from one side that the character overlaps and passes through until it has left them. */
+        passing: ShapeId[];
     };
     /** The surfaces that the character has met, in order. */
     met: MoverPlane[];
@@ -884,7 +886,8 @@ export interface Moved {
 /** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and is carried by moving
  * ground. The game adds gravity to the velocity. Call `moveCharacter` after `step`. Sensors, areas and events do not
  * notice a character. To find sensors, use `overlapShape` with `sensors: true`. To trigger events, let a kinematic body
- * follow the character, and leave this body out by `except` of the filter. */
+ * follow the character, and leave this body out by `except` of the filter. To push bodies, apply impulses to the bodies
+ * in `met`. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** Encodes the state of a character, for saves and hashes. */
 export function encodeMoverState(state: MoverState): Bytes;

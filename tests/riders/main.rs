@@ -1,7 +1,9 @@
 //! Characters stay on their ground, at 30 to 240 ticks a second.
 
+mod landings;
 mod one_way;
 mod overhangs;
+mod pushed;
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

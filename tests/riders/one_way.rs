@@ -155,3 +155,96 @@ fn characters_drop_through_platforms() {
         }
     }
 }
+
+/// A character whose chest is inside a one-way ledge is lifted by a platform that comes up through the floor: it passes
+/// the ledge, but not the platform.
+#[test]
+fn characters_inside_a_ledge_are_lifted_by_platforms() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        for (rise, masked) in [(fx!(0.025), false), (fx!(0.025), true), (fx!(0.08), false)] {
+            let mut world = world(60);
+            let block = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1)).expect("valid"));
+            world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[block]).expect("valid");
+            let ledge = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1)).expect("valid"));
+            let category = if masked { 2 } else { 1 };
+            let ledge = ledge.one_way(Angle::QUARTER).filter(Filter { category, ..Filter::default() });
+            world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1))), &[ledge]).expect("valid");
+            let lift = BodyDef::kinematic().position((fx!(0), fx!(-0.21)));
+            let lift = world.spawn(&lift, &platform).expect("valid");
+            let mover = Mover::new(shape).expect("valid");
+            let filter = QueryFilter { mask: if masked { !2 } else { u64::MAX }, ..QueryFilter::default() };
+            // It has jumped into the ledge from below.
+            let mut state = MoverState::at(at(fx!(0.1), fx!(-0.7999)));
+            let jump = MoverState { velocity: at(fx!(0), fx!(90)), ..state };
+            let inside = QueryFilter { mask: 0, ..filter };
+            state = world.move_character(&mover, &jump, inside).state;
+            state.velocity = Vec2::ZERO;
+            for number in 0..60 {
+                let place = world.body(lift).expect("there").position();
+                world.move_to(lift, place + at(fx!(0), rise), Angle::ZERO).expect("near");
+                world.step();
+                let velocity = at(fx!(0), state.velocity.y - fall(60));
+                state = world.move_character(&mover, &MoverState { velocity, ..state }, filter).state;
+                let case = format!("{name}, {rise} m a tick, masked: {masked}, tick {number}: {state:?}");
+                let top = world.body(lift).expect("there").position().y.max(fx!(0));
+                let above = feet(&state) - top;
+                assert!((fx!(0)..fx!(0.001)).contains(&above), "{case}: {above} m above");
+            }
+        }
+    }
+}
+
+/// A lift passes fixed one-way floors. A character that jumps on it lands on it, also inside a floor.
+#[test]
+fn characters_that_jump_on_a_lift_stay_on_it_among_one_way_floors() {
+    for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
+        let mut world = world(60);
+        for level in 1..20 {
+            let height = Fx::from_num(level) * 4 / 5;
+            world.spawn(&BodyDef::fixed().position((fx!(0), height)), &platforms()[0]).expect("valid");
+        }
+        let lift = BodyDef::kinematic().velocity((fx!(0), fx!(1.5)));
+        let lift = world.spawn(&lift, &platform).expect("valid");
+        let mover = Mover::new(shape).expect("valid");
+        let mut state = MoverState::at(at(fx!(0.1), fx!(0.7001)));
+        for number in 0..480 {
+            if number % 40 == 20 && state.is_on_ground() {
+                state.velocity.y = fx!(1);
+            }
+            state = tick(&mut world, (lift, fx!(0)), &mover, &state);
+            let above = feet(&state) - world.body(lift).expect("there").position().y;
+            let case = format!("{name}, tick {number}: {state:?}");
+            assert!(above >= 0, "{case}: {above} m above the lift");
+        }
+    }
+}
+
+/// A character that turns round inside a one-sided chain falls back through it while it moves along the chain.
+#[test]
+fn characters_fall_back_through_chains_that_they_run_along() {
+    let points: Vec<_> = (-100..=100).rev().map(|i| at(Fx::from_num(i) / 5, fx!(0))).collect();
+    let links = Chain::new(&points).one_sided().links().expect("valid");
+    for (name, shape) in shapes() {
+        // A character at 8 m/s comes to a new link within every two ticks.
+        for (speed, jump) in
+            [fx!(3), fx!(-8)].into_iter().flat_map(|speed| (10..40).map(move |jump| (speed, jump)))
+        {
+            let mut world = world(60);
+            let chain = world.spawn(&BodyDef::fixed(), &links).expect("valid");
+            let mover = Mover::new(shape).expect("valid");
+            let mut state = MoverState::at(at(fx!(0.1), fx!(-1)));
+            state.velocity.y = Fx::from_num(jump) / 8;
+            let mut highest = Fx::MIN;
+            for number in 0..90 {
+                state.velocity.x = speed;
+                let from = state.position.x;
+                state = tick(&mut world, (chain, fx!(0)), &mover, &state);
+                let moved = state.position.x - from;
+                let case = format!("{name}, {speed} m/s, jump {jump}, tick {number}: {state:?}");
+                assert!((moved - speed / 60).abs() < fx!(0.001), "{case}: moved by {moved} m");
+                highest = highest.max(feet(&state));
+            }
+            assert_eq!(state.is_on_ground(), highest > 0, "{name}, {speed} m/s, jump {jump}: {state:?}");
+        }
+    }
+}

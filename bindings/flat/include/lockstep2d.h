@@ -183,9 +183,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MOVER_ON_GROUND 1
 /* `ls2d_mover_state.flags`, in results: the character is wedged between two slopes that are too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
-/* `ls2d_mover_state.flags`: the character is inside a shape that is solid from one side only, and passes through
- * until it has left the shape. */
-#define LS2D_MOVER_PASSING 4
+/* `ls2d_mover_state.flags`: the last move has brought the character from the air onto ground. */
+#define LS2D_MOVER_LANDED 4
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
 /* `ls2d_config.flags`: fast bodies are swept so that they do not pass through shapes. */
@@ -860,6 +859,12 @@ typedef struct ls2d_mover_state {
     ls2d_vec2 velocity;
     /* With `LS2D_MOVER_ON_GROUND`, the ground on which the character stands; otherwise zeros. */
     ls2d_mover_plane ground;
+    /* Shapes solid from one side that the character overlaps and passes through until it has left them. */
+    ls2d_shape passing[8];
+    /* Number of these shapes. */
+    uint32_t passing_count;
+    /* Reserved: 0. */
+    uint32_t reserved;
 } ls2d_mover_state;
 
 /* Two shapes that began or ceased to touch. A handle is stale if its shape was removed. */

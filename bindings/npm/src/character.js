@@ -1,12 +1,13 @@
 // Characters.
-import { byteArray, fail, flag, given, instance, onlyKnown } from "./check.js";
+import { array, byteArray, fail, flag, given, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
-import { call, copy, fieldAt, give, library, list, optionsOf, read, scratch, sizeOf, write } from "./library.js";
+import { call, copy, fieldAt, give, idAt, library, list, optionsOf, read, scratch, sizeOf, struct, write } from "./library.js";
 import { World } from "./world.js";
 
-const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged", "isPassing"];
+const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged", "hasLanded", "passing"];
+const PASSING_MAX = struct("mover_state").fields.passing[2];
 const PLANE = optionsOf("mover_plane");
 const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
 
@@ -19,15 +20,15 @@ function writeMover(at, options) {
 }
 
 function writeState(at, state) {
-    const { position, velocity = [0, 0], ground, isWedged, isPassing } = onlyKnown(state, STATE_FIELDS, "the state of a character");
+    const { position, velocity = [0, 0], ground, isWedged, hasLanded, passing = [] } = onlyKnown(state, STATE_FIELDS, "the state of a character");
     if (position === undefined) {
         fail("the state of a character has a position");
     }
     call("ls2d_mover_state_init", 0n, 0n, at);
     const flags = (ground === undefined ? 0 : C.MOVER_ON_GROUND)
         | (flag(isWedged, "isWedged") ? C.MOVER_WEDGED : 0)
-        | (flag(isPassing, "isPassing") ? C.MOVER_PASSING : 0);
-    write("mover_state", at, { position, velocity, flags });
+        | (flag(hasLanded, "hasLanded") ? C.MOVER_LANDED : 0);
+    write("mover_state", at, { position, velocity, flags, passing: array(passing, "passing"), passingCount: passing.length });
     if (ground !== undefined) {
         onlyKnown(ground, PLANE, "`ground`");
         PLANE.forEach((name) => given(ground[name], `ground.${name}`));
@@ -36,11 +37,13 @@ function writeState(at, state) {
 }
 
 function readState(at) {
-    const { position, velocity, flags } = read("mover_state", at);
+    const { position, velocity, flags, passingCount } = read("mover_state", at);
     const isOnGround = (flags & C.MOVER_ON_GROUND) !== 0;
     const ground = isOnGround ? readPlane(fieldAt("mover_state", at, "ground")) : undefined;
-    const [isWedged, isPassing] = [C.MOVER_WEDGED, C.MOVER_PASSING].map((bit) => (flags & bit) !== 0);
-    return { position, velocity, ground, isOnGround, isWedged, isPassing };
+    const [isWedged, hasLanded] = [C.MOVER_WEDGED, C.MOVER_LANDED].map((bit) => (flags & bit) !== 0);
+    const ids = fieldAt("mover_state", at, "passing");
+    const passing = Array.from({ length: passingCount }, (_, index) => idAt(ids + 8 * index));
+    return { position, velocity, ground, isOnGround, isWedged, hasLanded, passing };
 }
 
 function readPlane(at) {
@@ -78,5 +81,9 @@ export function decodeMoverState(bytes) {
     if (byteArray(bytes, "the argument").length !== sizeOf("mover_state")) {
         throw new Lockstep2dError("DECODE", `the state of a character has ${sizeOf("mover_state")} bytes, and not ${bytes.length}`);
     }
-    return readState(give(bytes, 0));
+    const at = give(bytes, 0);
+    if (read("mover_state", at).passingCount > PASSING_MAX) {
+        throw new Lockstep2dError("DECODE", `the state of a character lists at most ${PASSING_MAX} shapes that it passes`);
+    }
+    return readState(at);
 }

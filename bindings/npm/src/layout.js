@@ -66,7 +66,7 @@ export const C = {
     SWEEP_KINEMATIC: 3,
     MOVER_ON_GROUND: 1,
     MOVER_WEDGED: 2,
-    MOVER_PASSING: 4,
+    MOVER_LANDED: 4,
     SLEEPING: 1,
     CONTINUOUS: 2,
     CONTACT_SOFT: 0,
@@ -394,12 +394,15 @@ export const STRUCTS = {
         body_angle: [88, "angle"],
         reserved: [92, "uint32_t"],
     } },
-    mover_state: { bytes: 136, fields: {
+    mover_state: { bytes: 208, fields: {
         size: [0, "uint32_t"],
         flags: [4, "uint32_t"],
         position: [8, "vec2"],
         velocity: [24, "vec2"],
         ground: [40, "mover_plane"],
+        passing: [136, "shape", 8],
+        passing_count: [200, "uint32_t"],
+        reserved: [204, "uint32_t"],
     } },
     contact_event: { bytes: 16, fields: {
         shape_a: [0, "shape"],

@@ -217,7 +217,7 @@ const READ = {
     joint: idAt,
     hash: hashAt,
 };
-const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
+const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, shape: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 

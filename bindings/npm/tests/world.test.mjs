@@ -310,10 +310,14 @@ test("the encoded state of a character has its whole state", () => {
     const [shape] = world.shapesOf(box);
     const frame = { bodyPosition: [0, 3], bodyAngle: L.degrees(5), velocity: [1, 0] };
     const ground = { shape, body: box, ...frame, normal: [0, 1], point: [1, 2], separation: "0.01" };
-    for (const state of [{ isWedged: true }, { isWedged: false }, { ground }, { ground, isWedged: true }]) {
+    for (const state of [{ isWedged: true }, { isWedged: false }, { ground }, { ground, isWedged: true }, { hasLanded: true, passing: [shape] }]) {
         const bytes = L.encodeMoverState({ position: [1, 2], velocity: [3, 4], ...state });
         const decoded = L.decodeMoverState(bytes);
         assert.deepEqual([decoded.isWedged, decoded.isOnGround], [state.isWedged ?? false, state.ground !== undefined]);
+        assert.deepEqual([decoded.hasLanded, decoded.passing], [state.hasLanded ?? false, state.passing ?? []]);
         assert.deepEqual(L.encodeMoverState(decoded), bytes);
     }
+    const wrong = L.encodeMoverState({ position: [1, 2], passing: [] }).fill(255, -8, -4);
+    assert.throws(() => L.decodeMoverState(wrong), { code: "DECODE" });
+    assert.throws(() => L.encodeMoverState({ position: [1, 2], passing: Array(9).fill(shape) }), { code: "VALUE" });
 });

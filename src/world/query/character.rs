@@ -14,6 +14,7 @@
 //! sufficient: it is 0 after [`World::move_to`], and does not give the displacement of a platform that turns or stops.
 //! A character that leaves its ground takes the velocity of the body along. If the velocity of a kinematic body is 0,
 //! the character takes the body's displacement since the last move instead, as if it were the displacement in one tick.
+//! The velocity of such a body is therefore known only in the move after a landing.
 
 use alloc::vec::Vec;
 
@@ -22,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::mover_planes::MoverPlane;
 use super::walk::Walk;
 use super::{Probe, QueryFilter};
-use crate::body::{Geometry, GeometryError};
+use crate::body::{Geometry, GeometryError, ShapeId};
 use crate::fx;
 use crate::math::{Angle, Fx, Unit, Vec2, fx_div};
 use crate::world::World;
@@ -153,16 +154,24 @@ pub struct MoverState {
     pub velocity: Vec2<Fx>,
     /// The ground that the character stands on, if any.
     pub ground: Option<MoverPlane>,
-    /// Whether the character overlaps a shape that is solid from one side. The character then passes through the shape
-    /// until it has left the shape.
-    pub is_passing: bool,
+    /// Whether the last move brought the character from the air onto ground. The next move then makes `velocity.x`
+    /// relative to ground that [`World::move_to`] moves, because the velocity of such ground is not known before.
+    pub has_landed: bool,
+    /// Shapes solid from one side that the character overlaps and passes through until it has left them. The links of a
+    /// chain have one entry. If the list is full, the character passes through all such shapes that it overlaps.
+    pub passing: [Option<ShapeId>; MoverState::PASSING_MAX],
 }
 
 impl MoverState {
+    /// Largest number of entries in [`MoverState::passing`].
+    pub const PASSING_MAX: usize = 8;
+
     /// A character at rest in the air.
     #[must_use]
     pub const fn at(position: Vec2<Fx>) -> Self {
-        MoverState { position, velocity: Vec2::new(Fx::ZERO, Fx::ZERO), ground: None, is_passing: false }
+        let velocity = Vec2::new(Fx::ZERO, Fx::ZERO);
+        let passing = [None; Self::PASSING_MAX];
+        MoverState { position, velocity, ground: None, has_landed: false, passing }
     }
 
     /// Whether the character stands on ground.
@@ -212,8 +221,10 @@ impl Moved {
 
 impl World {
     /// Moves a character for one tick at its velocity, among the shapes that a filter sees. The world does not change.
-    /// To let the character push bodies or be seen by queries, give it a kinematic body, leave that body out by
-    /// [`QueryFilter::except`], and let it follow by [`World::move_to`].
+    /// To let sensors, queries and other bodies notice the character, give it a kinematic body, leave that body out by
+    /// [`QueryFilter::except`], and let it follow by [`World::move_to`]. Bodies that the filter sees stop the character,
+    /// also if they are light, so that its own body does not reach them. To push them, apply impulses to the bodies in
+    /// [`Moved::met`], or leave their category out of the filter's mask.
     ///
     /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
     /// the surface speed of a belt. Call this after each [`World::step`]. Otherwise the character lags behind its lift,
@@ -249,8 +260,9 @@ impl World {
         walk.walk();
         let ground = walk.ground(carried);
         let velocity = walk.velocity_left(ground.as_ref(), carried);
-        let (position, is_passing) = (walk.position(), walk.is_passing());
-        Moved { state: MoverState { position, velocity, ground, is_passing }, met: walk.met() }
+        let has_landed = !state.is_on_ground() && ground.is_some();
+        let (position, passing) = (walk.position(), walk.passing());
+        Moved { state: MoverState { position, velocity, ground, has_landed, passing }, met: walk.met() }
     }
 }
 

@@ -7,6 +7,7 @@
 mod cast;
 mod character;
 mod mover_planes;
+mod one_way;
 mod overlap;
 mod probe;
 mod seam;

@@ -165,7 +165,8 @@ pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
 }
 
 impl MoverPlane {
-    fn height(&self, translation: Vec2<Fx>) -> Fx {
+    /// Distance of the mover from the surface after a translation.
+    pub(super) fn height(&self, translation: Vec2<Fx>) -> Fx {
         self.separation.saturating_add(self.normal.widen().dot(translation))
     }
 }

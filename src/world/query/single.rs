@@ -183,7 +183,8 @@ impl Probe {
         collide(&self.posed(), &other.posed(), margin, &mut axis, &mut counters)
     }
 
-    /// Returns when this shape and another first touch, as both move and turn.
+    /// Returns when this shape and another first touch, as both move and turn. A chain link that is solid from one side
+    /// counts from both sides, as in [`Probe::distance`] and [`Probe::overlaps`], and unlike in [`Probe::cast`].
     ///
     /// ```
     /// use lockstep2d::{body::Geometry, fx, math::Vec2};

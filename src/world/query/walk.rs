@@ -8,13 +8,13 @@ use super::mover_planes::{MoverPlane, along_surface, clipped, solve_planes};
 use super::seam::Rest;
 use super::step_edge::Surface;
 use super::{InitialOverlap, Probe, QueryFilter};
-use crate::body::{BodyId, BodyKind, Geometry, Handle, Shape, ShapeId, Sides};
-use crate::collision::{SKIN, SupportShape, distance, is_open, pass_direction};
+use crate::body::{BodyId, BodyKind, Handle, ShapeId};
+use crate::collision::{SKIN, SupportShape, distance};
 use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
 use crate::world::World;
 
-/// Largest number of casts in a slide or a snap, and of attempts to push a character out.
+/// Largest number of casts with which a character slides, is carried, snaps to the ground or is pushed out.
 const TURNS_MAX: u32 = 8;
 
 /// Length in metres below which the rest of a translation is dropped.
@@ -22,6 +22,10 @@ const LEFT_OVER: Fx = fx!(0.000001);
 
 /// Largest distance in metres between a character and ground on which it stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
+
+/// Largest ratio of a push to the deepest overlap. A wedge of less than 15 degrees crushes the character, because it
+/// would have to move too far to the side.
+const PUSH_MAX: i64 = 4;
 
 /// Effect on a cast of the shapes that overlap the character.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -45,7 +49,7 @@ pub(super) struct Walk<'a> {
     pub(super) mover: &'a Mover,
     pub(super) filter: QueryFilter,
     /// The state at the start of the move.
-    from: MoverState,
+    pub(super) from: MoverState,
     pub(super) probe: Probe,
     pub(super) on_ground: bool,
     /// Normal of the ground that the character walks along.
@@ -81,7 +85,7 @@ impl<'a> Walk<'a> {
         self.surfaces.into_iter().map(|(_, plane)| plane).collect()
     }
 
-    /// Moves the character with the point under its feet, at most until the character meets a shape of another body.
+    /// Moves the character with the point under its feet, deflected by the shapes of other bodies that it meets.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -92,10 +96,7 @@ impl<'a> Walk<'a> {
         } else {
             body.position() + arm_now - ground.point
         };
-        if by != Vec2::ZERO {
-            let hit = self.cast_among(&self.probe, by, Overlaps::Pass, Some(ground.body));
-            self.advance(hit.map_or(by, |(travelled, _)| travelled));
-        }
+        self.ride(by, ground.body);
         // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
         // velocity of a kinematic body is 0, the displacement counts as the displacement in one tick. This is meant for
         // a body moved by `World::move_to`, but also applies to a body at rest that `World::set_transform` has placed
@@ -104,21 +105,44 @@ impl<'a> Walk<'a> {
         if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
             let rate = i64::from(self.world.state.config.tick_rate);
             velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
+            // At the landing, the velocity of such a body was unknown.
+            if self.from.has_landed {
+                self.from.velocity.x = taken_along(self.from.velocity.x, velocity.x);
+            }
         }
         Some(Carrier { body: ground.body, velocity })
     }
 
-    /// Moves the character out of overlapping shapes, at most until it meets another shape.
+    fn ride(&mut self, translation: Vec2<Fx>, carrier: BodyId) {
+        let mut left = translation;
+        let mut normals: Vec<Vec2<Unit>> = Vec::new();
+        for _ in 0..TURNS_MAX {
+            if left == Vec2::ZERO {
+                return;
+            }
+            let hit = self.cast_among(&self.probe, left, Overlaps::Pass, Some(carrier));
+            let Some((travelled, plane)) = hit else { return self.advance(left) };
+            self.advance(travelled);
+            normals.push(plane.normal);
+            // A slope that is too steep to stand on does not deflect a rider upwards.
+            if plane.normal.y > 0 && !self.mover.is_ground(plane.normal) {
+                normals.push(upright(plane.normal));
+            }
+            left = clipped(left - travelled, normals.iter().copied());
+        }
+    }
+
+    /// Moves the character out of overlapping shapes. Surfaces that it meets deflect it: a box pushes it along the
+    /// floor or up a ramp. A character that other shapes hold fast stays where it is.
     pub(super) fn push_out(&mut self) {
         let rate = i64::from(self.world.state.config.tick_rate);
+        let mut met: Vec<MoverPlane> = Vec::new();
         for _ in 0..TURNS_MAX {
             let mut planes = self.world.collide_mover(&self.probe, Fx::ZERO, self.filter);
             planes.retain(|plane| {
                 plane.separation < Fx::ZERO && !self.passes(plane.shape, plane.normal, plane.separation)
             });
-            if planes.is_empty() {
-                return;
-            }
+            let mut deepest = Fx::ZERO;
             for plane in &mut planes {
                 if self.mover.is_ground(plane.normal) {
                     self.on_ground = true;
@@ -126,13 +150,24 @@ impl<'a> Walk<'a> {
                     self.lifted = self.lifted.max(plane.normal.widen().scale(speed).y);
                 }
                 plane.separation = plane.separation.saturating_sub(SKIN);
+                deepest = deepest.min(plane.separation);
             }
-            let out = solve_planes(Vec2::ZERO, &mut planes);
-            let travelled = self.cast(out).map_or(out, |(travelled, _)| travelled);
-            if travelled.length() < LEFT_OVER {
+            if planes.is_empty() {
                 return;
             }
+            planes.extend_from_slice(&met);
+            let out = solve_planes(Vec2::ZERO, &mut planes);
+            if !(LEFT_OVER..=deepest.saturating_mul_int(-PUSH_MAX)).contains(&out.length()) {
+                return;
+            }
+            let hit = self.cast(out);
+            let travelled = hit.map_or(out, |(travelled, _)| travelled);
             self.advance(travelled);
+            for plane in &mut met {
+                plane.separation = plane.height(travelled);
+            }
+            // The cast has stopped at the gap that the character keeps, which counts as no distance.
+            met.extend(hit.map(|(_, plane)| MoverPlane { separation: Fx::ZERO, ..plane }));
         }
     }
 
@@ -156,7 +191,8 @@ impl<'a> Walk<'a> {
     pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
         let walked = self.along.is_some();
         let found = self.find_ground().filter(|plane| !self.leaves(plane));
-        if found.is_none() && walked {
+        // A character that was in the air has moved by the vertical part already.
+        if found.is_none() && walked && self.from.is_on_ground() {
             self.along = None;
             self.slide(Vec2::new(Fx::ZERO, in_tick(self.world, self.from.velocity).y));
         }
@@ -246,13 +282,12 @@ impl<'a> Walk<'a> {
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
-            let wall = if plane.normal.x < 0 { -Vec2::X } else { Vec2::X };
-            let (own, upright) = match surface {
+            let (own, wall) = match surface {
                 Surface::Ground | Surface::Step => (all_ground.then_some(plane.normal), None),
-                Surface::Steep => (Some(plane.normal), Some(wall)),
+                Surface::Steep => (Some(plane.normal), Some(upright(plane.normal))),
                 Surface::Wall => (Some(plane.normal), None),
             };
-            own.into_iter().chain(upright)
+            own.into_iter().chain(wall)
         });
         walls.chain(self.along.filter(|_| ground_too))
     }
@@ -331,43 +366,11 @@ impl<'a> Walk<'a> {
     fn advance(&mut self, by: Vec2<Fx>) {
         self.probe = self.probe.at(self.probe.position() + by);
     }
-
-    /// Whether the character passes through a shape that is solid from one side. The character passes if it comes from
-    /// the open side, or if it has been passing and still overlaps the shape.
-    fn passes(&self, id: ShapeId, normal: Vec2<Unit>, separation: Fx) -> bool {
-        let Some(shape) = self.world.shape(id) else { return true };
-        let direction = shape.one_way().zip(self.world.body(shape.body()));
-        let is_open =
-            direction.is_some_and(|(angle, body)| is_open(pass_direction(body.angle() + angle), normal));
-        is_open || self.from.is_passing && is_solid_from_one_side(shape) && self.is_deep(separation)
-    }
-
-    /// Whether an overlap exceeds the slack: a character that has just come onto ground may overlap it by less. The
-    /// slack has the same purpose as in [`OneWay`].
-    ///
-    /// [`OneWay`]: crate::collision::OneWay
-    fn is_deep(&self, separation: Fx) -> bool {
-        separation < -self.world.state.config.touching_distance()
-    }
-
-    /// Whether the character overlaps a shape that is solid from one side by more than the slack. Ignores the mask of
-    /// the filter, because a game may leave a platform out of it for some ticks to let the character drop through.
-    pub(super) fn is_passing(&self) -> bool {
-        let (posed, origin) = (self.probe.posed(), self.probe.position());
-        let own = SupportShape::of(&posed, origin);
-        let mut passing = false;
-        let filter = QueryFilter { mask: u64::MAX, ..self.filter };
-        self.world.each_overlapping(posed.bounds, filter, |id, other| {
-            let is_one_sided = || self.world.shape(id).is_some_and(is_solid_from_one_side);
-            passing = passing
-                || is_one_sided() && self.is_deep(distance(&SupportShape::of(other, origin), &own).distance);
-        });
-        passing
-    }
 }
 
-fn is_solid_from_one_side(shape: &Shape) -> bool {
-    shape.one_way().is_some() || matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. })
+/// Normal of an upright wall that faces to the same side as a slope.
+fn upright(slope: Vec2<Unit>) -> Vec2<Unit> {
+    if slope.x < 0 { -Vec2::X } else { Vec2::X }
 }
 
 /// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to

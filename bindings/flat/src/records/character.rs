@@ -8,16 +8,15 @@ use super::shape::RawShapeDef;
 use super::{check_flags, check_reserved, check_size, flag, has, size};
 use crate::describe::{constants, records};
 use crate::numbers::{RawAngle, RawBody, RawFx, RawShape, RawVec2};
-use crate::status::Outcome;
+use crate::status::{Outcome, value};
 
 constants! {
     /// `ls2d_mover_state.flags`: the character stands on ground.
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
     /// `ls2d_mover_state.flags`, in results: the character is wedged between two slopes that are too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
-    /// `ls2d_mover_state.flags`: the character is inside a shape that is solid from one side only, and passes through
-    /// until it has left the shape.
-    MOVER_PASSING = 4, "LS2D_MOVER_PASSING";
+    /// `ls2d_mover_state.flags`: the last move has brought the character from the air onto ground.
+    MOVER_LANDED = 4, "LS2D_MOVER_LANDED";
 }
 
 records! {
@@ -69,6 +68,12 @@ records! {
         velocity: RawVec2,
         /// With `LS2D_MOVER_ON_GROUND`, the ground on which the character stands; otherwise zeros.
         ground: RawMoverPlane,
+        /// Shapes solid from one side that the character overlaps and passes through until it has left them.
+        passing: [RawShape; MoverState::PASSING_MAX],
+        /// Number of these shapes.
+        passing_count: u32,
+        /// Reserved: 0.
+        reserved: u32,
     }
 }
 
@@ -143,22 +148,41 @@ impl RawMoverState {
     }
 
     pub(crate) fn of(state: &MoverState, is_wedged: bool) -> Self {
+        let (mut passing, mut passing_count) = ([RawShape(0); MoverState::PASSING_MAX], 0);
+        for (place, &shape) in passing.iter_mut().zip(state.passing.iter().flatten()) {
+            *place = RawShape::of(shape);
+            passing_count += 1;
+        }
         RawMoverState {
             size: size::<Self>(),
             flags: flag(state.is_on_ground(), MOVER_ON_GROUND)
                 | flag(is_wedged, MOVER_WEDGED)
-                | flag(state.is_passing, MOVER_PASSING),
+                | flag(state.has_landed, MOVER_LANDED),
             position: RawVec2::of(state.position),
             velocity: RawVec2::of(state.velocity),
             ground: state.ground.as_ref().map_or(RawMoverPlane::NONE, RawMoverPlane::of),
+            passing,
+            passing_count,
+            reserved: 0,
         }
     }
 
     pub(crate) fn state(&self) -> Outcome<MoverState> {
         check_size::<Self>(self.size)?;
-        check_flags("the flags of a character", self.flags, MOVER_ON_GROUND | MOVER_WEDGED | MOVER_PASSING)?;
-        let ground = has(self.flags, MOVER_ON_GROUND).then(|| self.ground.plane()).transpose()?;
-        let is_passing = has(self.flags, MOVER_PASSING);
-        Ok(MoverState { position: self.position.vec(), velocity: self.velocity.vec(), ground, is_passing })
+        check_reserved(self.reserved)?;
+        check_flags("the flags of a character", self.flags, MOVER_ON_GROUND | MOVER_WEDGED | MOVER_LANDED)?;
+        let count = usize::try_from(self.passing_count).unwrap_or(usize::MAX);
+        let listed = self.passing.get(..count).ok_or_else(|| value("the number of passed shapes", count))?;
+        let mut passing = [None; MoverState::PASSING_MAX];
+        for (place, shape) in passing.iter_mut().zip(listed) {
+            *place = Some(shape.id()?);
+        }
+        Ok(MoverState {
+            position: self.position.vec(),
+            velocity: self.velocity.vec(),
+            ground: has(self.flags, MOVER_ON_GROUND).then(|| self.ground.plane()).transpose()?,
+            has_landed: has(self.flags, MOVER_LANDED),
+            passing,
+        })
     }
 }

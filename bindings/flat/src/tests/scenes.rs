@@ -230,6 +230,29 @@ fn a_character_moves_as_in_rust() {
     done(ls2d_free(world));
 }
 
+#[test]
+fn the_state_of_a_character_has_the_shapes_that_it_passes() {
+    use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+    use lockstep2d::fx;
+    use lockstep2d::math::Vec2;
+    use lockstep2d::world::{MoverState, World};
+
+    let mut world = World::default();
+    let square = ShapeDef::new(Polygon::square(fx!(1)).unwrap());
+    let body = world.spawn(&BodyDef::fixed(), &[square; 3]).unwrap();
+    let mut state = MoverState { has_landed: true, ..MoverState::at(Vec2::ZERO) };
+    for (i, &shape) in world.shapes_of(body).iter().enumerate() {
+        state.passing[i] = Some(shape);
+        let raw = RawMoverState::of(&state, false);
+        assert_eq!((raw.flags, raw.state()), (MOVER_LANDED, Ok(state)));
+    }
+    let mut raw = RawMoverState::of(&state, false);
+    assert_eq!(raw.passing_count, 3);
+    raw.passing_count = 9;
+    assert!(raw.state().is_err());
+    assert!(RawMoverState { passing_count: 0, reserved: 1, ..raw }.state().is_err());
+}
+
 /// A call with a short buffer or a wrong body adds nothing.
 #[test]
 fn bodies_and_joints_are_added_together_or_not_at_all() {
