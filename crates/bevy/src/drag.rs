@@ -1,8 +1,10 @@
 //! [`DragPlugin`]: bodies of a [`Sandbox`] follow the pointer.
 
-use bevy::app::{App, Plugin, RunFixedMainLoop};
+use bevy::app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy::math::Vec2 as FloatVec2;
-use bevy::prelude::{IntoScheduleConfigs, Reflect, ReflectResource, Res, ResMut, Resource, resource_exists};
+use bevy::prelude::{
+    IntoScheduleConfigs, Local, Reflect, ReflectResource, Res, ResMut, Resource, resource_exists,
+};
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::lockstep::Sandbox;
@@ -73,7 +75,13 @@ impl Plugin for DragPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<DragHand>().register_type::<DragHand>().add_systems(
             RunFixedMainLoop,
-            pull.in_set(LockstepSystems::Inputs).run_if(resource_exists::<Lockstep<Sandbox>>),
+            (
+                let_go
+                    .in_set(RunFixedMainLoopSystems::FixedMainLoop)
+                    .before(LockstepSystems::Inputs)
+                    .run_if(resource_exists::<Lockstep<Sandbox>>),
+                pull.in_set(LockstepSystems::Inputs).run_if(resource_exists::<Lockstep<Sandbox>>),
+            ),
         );
     }
 }
@@ -86,12 +94,27 @@ pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     Vec2::new(metres(at.x), metres(at.y))
 }
 
+/// Releases a body of a former game. Another body may have the same id in the next game.
+fn let_go(lockstep: Res<Lockstep<Sandbox>>, mut hand: ResMut<DragHand>, mut game: Local<Option<u64>>) {
+    let former = game.replace(lockstep.number());
+    if former.is_some_and(|former| former != lockstep.number()) && hand.target.is_some() {
+        hand.release();
+    }
+}
+
+/// `pulled` is the command of the last call.
 pub(crate) fn pull(
     mut hand: ResMut<DragHand>,
     lockstep: Res<Lockstep<Sandbox>>,
     settings: Res<LockstepSettings>,
     mut inputs: ResMut<Inputs<Sandbox>>,
+    mut pulled: Local<Option<Command>>,
 ) {
+    // No tick may have used the last command, for example during a pause. It is then replaced, or removed if the body
+    // was released.
+    if let (Some(last), Some(once)) = (pulled.take(), inputs.pending(0)) {
+        once.retain(|command| *command != last);
+    }
     let (Some(at), Some(world)) = (hand.at, lockstep.world()) else { return };
     let at = to_metres(at, &settings);
     if hand.held.is_none_or(|held| world.body(held.body).is_none()) {
@@ -103,15 +126,9 @@ pub(crate) fn pull(
         hand.target = hand.target.or(hand.held.map(|held| held.body));
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // Replaces the force that remains from an earlier frame without a tick. In a frame with two ticks, only the first
-    // tick applies the force.
-    let once = inputs.once(0);
-    once.retain(|other| !is_same_pull(other, &command));
-    once.push(command);
-}
-
-fn is_same_pull(a: &Command, b: &Command) -> bool {
-    matches!((a, b), (Command::ApplyForce { body: a, .. }, Command::ApplyForce { body: b, .. }) if a == b)
+    // In a frame with two ticks, only the first tick applies the force.
+    inputs.once(0).push(command.clone());
+    *pulled = Some(command);
 }
 
 /// The first dynamic body at a point.
@@ -135,7 +152,7 @@ const ACCELERATION_MAX: Fx = fx!(500);
 
 /// Force of a damped spring from the grip to the pointer.
 fn pull_command(world: &World, held: Held, at: Vec2<Fx>) -> Option<Command> {
-    let body = world.body(held.body)?;
+    let body = world.body(held.body).filter(|body| body.is_dynamic())?;
     let grip = body.transform().apply(held.grip);
     let (way, velocity) = (at - grip, body.velocity_at(grip));
     let pull = |way: Fx, velocity: Fx| {

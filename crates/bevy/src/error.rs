@@ -86,7 +86,8 @@ impl From<SetupError> for LockstepError {
     }
 }
 
-/// Sent when the driver has stopped. Only a replay can continue, after a [`Lockstep::seek`](crate::Lockstep::seek).
+/// Sent when the driver has stopped. A replay can continue after a [`Lockstep::seek`](crate::Lockstep::seek), and a
+/// peer after [`Peer::ask`](lockstep2d::peer::Peer::ask).
 #[derive(Message, Clone, Debug)]
 pub struct LockstepFailed(
     /// Reason.

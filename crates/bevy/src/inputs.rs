@@ -58,6 +58,11 @@ impl<G: LockstepGame> Inputs<G> {
         once.get_or_insert_with(|| held.clone())
     }
 
+    /// The input of a local player for the next tick alone, if there is one already.
+    pub(crate) fn pending(&mut self, player: u32) -> Option<&mut G::Input> {
+        self.seats.get_mut(player as usize)?.once.as_mut()
+    }
+
     /// Removes all inputs.
     pub fn clear(&mut self) {
         self.seats.clear();

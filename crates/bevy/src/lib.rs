@@ -11,7 +11,8 @@
 //! ```
 //! use bevy::prelude::*;
 //! use bevy_lockstep2d::prelude::*;
-//! use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, lockstep::{Sandbox, SandboxSetup}, world::Command};
+//! use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+//! use lockstep2d::{fx, lockstep::{Sandbox, SandboxSetup}, world::Command};
 //!
 //! let spawn = |body, shape| Command::Spawn { body, shapes: vec![ShapeDef::new(shape)] };
 //! let ground = Polygon::rectangle(fx!(20), fx!(1))?;

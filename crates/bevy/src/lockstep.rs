@@ -182,13 +182,14 @@ impl<G: LockstepGame> Lockstep<G> {
         self.is_paused
     }
 
-    /// Plays one tick in the next frame although the game is paused. If it is not paused, this tick is played in addition
-    /// to those that are due. Has no effect in a match.
+    /// Plays one tick in the next frame although the game is paused. If it is not paused, this tick is played in
+    /// addition to those that are due. Has no effect in a match or after a failure.
     pub fn step_once(&mut self) {
         self.single_steps = self.single_steps.saturating_add(1);
     }
 
-    /// Why the driver has stopped. The plugin also sends it as [`LockstepFailed`](crate::LockstepFailed) and logs it.
+    /// Why the driver has stopped. The plugin also sends it as [`LockstepFailed`](crate::LockstepFailed) and logs it. A
+    /// peer then leaves its match, so that the others continue. [`Peer::ask`] lets it join again.
     #[must_use]
     pub const fn failure(&self) -> Option<&LockstepError> {
         self.failure.as_ref()
@@ -299,19 +300,30 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
-        let mut result = Ok(());
-        if self.failure.is_none() {
-            result = self.run_singly(inputs).and_then(|()| self.driver.run(time, self.is_paused, inputs));
-            self.failure = result.clone().err();
+        let single_steps = core::mem::take(&mut self.single_steps);
+        let has_failed = self.failure.is_some();
+        // Whether ticks can be played.
+        let result = match &mut self.driver {
+            Driver::Match(network) if has_failed => network.run_failed(time),
+            _ if has_failed => Ok(false),
+            _ => {
+                let stepped = self.run_singly(single_steps, inputs);
+                stepped.and_then(|()| self.driver.run(time, self.is_paused, inputs)).map(|()| true)
+            }
+        };
+        match &result {
+            Ok(true) => self.failure = None,
+            Ok(false) => {}
+            Err(error) => self.failure = Some(error.clone()),
         }
         if self.failure.is_some() || self.seats().is_empty() {
             inputs.used();
         }
-        result
+        result.map(drop)
     }
 
-    fn run_singly(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
-        for _ in 0..core::mem::take(&mut self.single_steps) {
+    fn run_singly(&mut self, ticks: u32, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
+        for _ in 0..ticks {
             match &mut self.driver {
                 Driver::Local(local) => local.step(inputs)?,
                 Driver::SyncTest(test) => test.step(inputs)?,
@@ -326,7 +338,8 @@ impl<G: LockstepGame> Lockstep<G> {
         self.peer_mut().and_then(Peer::next_event)
     }
 
-    /// Whether an error has stopped the game, or its match has ended. Only a replay can still play ticks, after a seek.
+    /// Whether an error has stopped the game, or its match has ended. Only a replay can still play ticks, after a seek,
+    /// and a peer that joins again.
     pub(crate) fn has_ended(&self) -> bool {
         self.failure.is_some() || matches!(&self.driver, Driver::Match(network) if network.has_ended())
     }

@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use bevy::app::{App, Plugin, PreUpdate, RunFixedMainLoop};
 use bevy::camera::Camera;
-use bevy::math::{Dir3, Ray3d, Vec3, Vec3Swizzles, primitives::InfinitePlane3d};
+use bevy::math::{Dir3, Ray3d, Vec2, Vec3, Vec3Swizzles, primitives::InfinitePlane3d};
 use bevy::picking::backend::ray::{RayId, RayMap};
 use bevy::picking::backend::{HitData, PointerHits};
 use bevy::picking::events::{Pointer, Press};
@@ -12,8 +12,9 @@ use bevy::picking::pointer::{PointerAction, PointerButton, PointerInput};
 use bevy::picking::{Pickable, PickingSystems};
 use bevy::prelude::{
     Entity, IntoScheduleConfigs, MessageReader, MessageWriter, On, Query, Res, ResMut, Resource, Transform,
-    resource_exists,
+    TransformHelper, resource_exists,
 };
+use lockstep2d::body::BodyId;
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::world::World;
 
@@ -24,7 +25,8 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 use crate::views::{BodyView, BodyViews};
 
 /// A picking backend: views receive `Pointer<Click>` and the other events of [`bevy::picking`] at the shapes of their
-/// bodies, except sensors. A view with [`Pickable::IGNORE`] is left out. The view with the largest z is in front.
+/// bodies, except sensors. A view with [`Pickable::IGNORE`] is left out. The view with the largest z in the world is in
+/// front.
 ///
 /// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///
@@ -91,6 +93,7 @@ fn pick<G: LockstepGame>(
     (settings, views, rays): (Res<LockstepSettings>, Res<BodyViews>, Res<RayMap>),
     cameras: Query<&Camera>,
     shown: Query<(&Transform, Option<&Pickable>)>,
+    transforms: TransformHelper,
     mut hits: MessageWriter<PointerHits>,
 ) {
     let Some(world) = lockstep.world() else { return };
@@ -98,8 +101,10 @@ fn pick<G: LockstepGame>(
         let order = cameras.get(id.camera).ok()?.order;
         let (point, distance) = on_plane(*ray)?;
         let hit = |entity: Entity| {
-            let (place, pickable) = shown.get(entity).ok()?;
-            let depth = distance - place.translation.z;
+            let (local, pickable) = shown.get(entity).ok()?;
+            // If an ancestor has no `Transform`, the view is drawn as if it had no parent.
+            let global = transforms.compute_global_transform(entity);
+            let depth = distance - global.map_or(local.translation, |global| global.translation()).z;
             let is_pickable = pickable.is_none_or(|pickable| *pickable != Pickable::IGNORE);
             is_pickable.then(|| (entity, HitData::new(id.camera, depth, Some(point), None)))
         };
@@ -124,9 +129,14 @@ fn views_at<'a>(
     entities.into_iter()
 }
 
-/// The pointer that holds a body, and the camera that it points through.
+/// A pointer that holds a body, and the camera that it points through.
 #[derive(Resource, Default)]
-struct HoldingPointer(Option<RayId>);
+struct HoldingPointer {
+    ray: Option<RayId>,
+    /// Body and position of a press by the pointer that holds a body already. The pointer may have been released in the
+    /// same frame before this press.
+    next: Option<(RayId, BodyId, Vec2)>,
+}
 
 /// A press on a view or on one of its children starts to drag the body of the view.
 fn grab(
@@ -139,13 +149,20 @@ fn grab(
     let Some(world) = lockstep.as_ref().and_then(|lockstep| lockstep.world()) else { return };
     let Ok(body) = views.get(press.entity).map(|view| view.body()) else { return };
     let is_dynamic = world.body(body).is_some_and(|body| body.is_dynamic());
-    if let Some(at) = press.hit.position
-        && is_dynamic
-        && press.button == PointerButton::Primary
-        && holding.0.is_none()
-    {
-        hand.hold_body(body, at.xy());
-        holding.0 = Some(RayId::new(press.hit.camera, press.pointer_id));
+    let Some(at) = press.hit.position.filter(|_| is_dynamic && press.button == PointerButton::Primary) else {
+        return;
+    };
+    let ray = RayId::new(press.hit.camera, press.pointer_id);
+    match holding.ray {
+        None => {
+            hand.hold_body(body, at.xy());
+            holding.ray = Some(ray);
+        }
+        Some(held) if held.pointer == ray.pointer => {
+            // Ancestors of the pressed view receive the press after it.
+            holding.next.get_or_insert((ray, body, at.xy()));
+        }
+        Some(_) => {}
     }
 }
 
@@ -156,17 +173,24 @@ fn move_hand(
     mut hand: ResMut<DragHand>,
     mut holding: ResMut<HoldingPointer>,
 ) {
-    let Some(ray) = holding.0 else { return inputs.clear() };
-    let change = |input: &PointerInput| match input.action {
+    let Some(ray) = holding.ray else { return inputs.clear() };
+    let is_down = |input: &PointerInput| match input.action {
         PointerAction::Press(PointerButton::Primary) => Some(true),
         PointerAction::Release(PointerButton::Primary) | PointerAction::Cancel => Some(false),
         _ => None,
     };
     let own = inputs.read().filter(|input| input.pointer_id == ray.pointer);
-    if own.filter_map(change).last() == Some(false) {
+    let changes: Vec<bool> = own.filter_map(is_down).collect();
+    let next = holding.next.take().filter(|_| changes.last() == Some(&true));
+    if changes.contains(&false) {
         hand.release();
-        holding.0 = None;
-    } else if let Some((at, _)) = rays.map.get(&ray).and_then(|ray| on_plane(*ray)) {
+        holding.ray = next.map(|(ray, body, at)| {
+            hand.hold_body(body, at);
+            ray
+        });
+    }
+    let Some(ray) = holding.ray else { return };
+    if let Some((at, _)) = rays.map.get(&ray).and_then(|ray| on_plane(*ray)) {
         hand.move_to(at.xy());
     }
 }

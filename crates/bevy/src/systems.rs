@@ -6,10 +6,11 @@ use bevy::math::Quat;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
 use bevy::prelude::{
-    Commands, DetectChanges, DetectChangesMut, Entity, MessageWriter, Query, Real, Res, ResMut, Time,
+    Commands, DetectChanges, DetectChangesMut, Entity, MessageWriter, Query, Real, Ref, Res, ResMut, Time,
     Transform,
 };
 use lockstep2d::body::BodyId;
+use lockstep2d::lockstep::Game;
 use lockstep2d::world::World;
 
 use crate::drivers::FrameTime;
@@ -38,6 +39,8 @@ pub(crate) fn step<G: LockstepGame>(
     mut failures: MessageWriter<LockstepFailed>,
 ) {
     let time = FrameTime { delta: time.delta(), real_delta: real.delta(), real_elapsed: real.elapsed() };
+    // A system of `LockstepSystems::Inputs` may have replaced the game.
+    inputs.begin_game(lockstep.number());
     let start = Instant::now();
     let result = lockstep.run(time, &mut inputs);
     let step_time = start.elapsed();
@@ -60,19 +63,25 @@ pub(crate) fn write_views<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     mut views: ResMut<BodyViews>,
     (settings, time): (Res<LockstepSettings>, Res<Time<Real>>),
-    all: Query<(Entity, &BodyView), Allow<Disabled>>,
+    all: Query<(Entity, Ref<BodyView>), Allow<Disabled>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
     // The game may have despawned a view, or removed its component.
     views.retain(|view| all.get(view.entity).is_ok_and(|(_, shown)| shown.body() == view.body));
-    // Entities that the game has prepared as views. They are not in the table `views` yet, unlike the views of a former
-    // game.
-    let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
+    let is_new_game = views.begin_game(lockstep.number());
+    // Entities that the game has prepared as views. They are not in the table `views` yet, except views of a former
+    // game into which the component was inserted again for the new game.
+    let is_prepared = |(entity, view): &(Entity, Ref<BodyView>)| {
+        let is_inserted_again = view.is_changed() && !view.is_added();
+        views.entity(view.body()) != Some(*entity) || (is_new_game && is_inserted_again)
+    };
     let prepared: HashMap<BodyId, Entity> =
-        all.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
-    if views.begin_game(lockstep.number()) {
-        // The table has only views of the former game. Views prepared for the new game are not in it, so they are kept.
-        views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
+        all.iter().filter(is_prepared).map(|(entity, view)| (view.body(), entity)).collect();
+    if is_new_game {
+        for view in views.take_all().into_iter().filter(|view| prepared.get(&view.body) != Some(&view.entity))
+        {
+            commands.entity(view.entity).try_despawn();
+        }
     }
     let world = lockstep.world();
     {
@@ -86,9 +95,15 @@ pub(crate) fn write_views<G: LockstepGame>(
         }
         replace_strangers(&mut commands, &mut views, &log, world);
         log.show(world);
-        follow(&mut commands, &mut views, &log, world, &settings, &prepared);
+        let jumps =
+            Jumps { log: &log, tick_rate: lockstep.observed().tick_rate(), limit: settings.smoothing_limit };
+        follow(&mut commands, &mut views, &jumps, &settings, &prepared);
     }
     let (fraction, redraw) = (lockstep.fraction(), settings.is_changed());
+    if redraw {
+        // Includes views without a `Transform` and disabled ones, which are drawn when they are complete again.
+        views.views_mut().for_each(|view| view.is_settled = false);
+    }
     let draw = |view: &View| {
         let pose = match settings.interpolate {
             true => DrawnPose::between(view.previous, view.current, fraction),
@@ -101,7 +116,8 @@ pub(crate) fn write_views<G: LockstepGame>(
     }
     for (view, entity, mut transform) in &mut shown {
         let Some(view) = views.view_mut(view.body()).filter(|view| view.entity == entity) else { continue };
-        if view.is_settled && !redraw {
+        // The game may have changed or replaced the `Transform`. Writes of this system do not count as changes here.
+        if view.is_settled && !transform.is_changed() {
             continue;
         }
         let at_rest = view.offset == Offset::ZERO && (!settings.interpolate || view.previous == view.current);
@@ -121,19 +137,42 @@ fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepL
     }
 }
 
+/// Recognises bodies that the game has teleported in the last tick.
+struct Jumps<'a> {
+    log: &'a StepLog,
+    /// Ticks of the game per second. Its world may make several steps in a tick.
+    tick_rate: u32,
+    /// Movements up to this limit, in metres, are no jumps.
+    limit: f32,
+}
+
+impl Jumps<'_> {
+    /// Whether the origin of a body moved by more than the limit, and by more than twice its speed times the duration
+    /// of a tick. The larger speed of before and after the tick counts.
+    fn is_jump(&self, body: BodyId, previous: Pose, current: Pose) -> bool {
+        if previous.position == current.position {
+            return false;
+        }
+        let way = metres(current.position - previous.position).length();
+        if way <= self.limit {
+            return false;
+        }
+        let speed = |poses: &Poses| poses.velocity(body).map_or(0.0, |velocity| metres(velocity).length());
+        way > 2.0 * speed(&self.log.before).max(speed(&self.log.after)) / self.tick_rate as f32
+    }
+}
+
 fn follow(
     commands: &mut Commands,
     views: &mut BodyViews,
-    log: &StepLog,
-    world: Option<&World>,
+    jumps: &Jumps<'_>,
     settings: &LockstepSettings,
     prepared: &HashMap<BodyId, Entity>,
 ) {
     views.begin_frame();
-    for (body, current) in log.after.iter() {
-        let is_way =
-            |previous: &Pose| !is_jump(world, log, body, *previous, current, settings.smoothing_limit);
-        let previous = log.before.get(body).filter(is_way).unwrap_or(current);
+    for (body, current) in jumps.log.after.iter() {
+        let is_way = |previous: &Pose| !jumps.is_jump(body, *previous, current);
+        let previous = jumps.log.before.get(body).filter(is_way).unwrap_or(current);
         if views.see(body, previous, current) {
             continue;
         }
@@ -146,28 +185,6 @@ fn follow(
         }
     }
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
-}
-
-/// Whether the game has teleported a body in the last tick: its origin moved by more than `limit` metres, and by more
-/// than twice its speed times the duration of a tick. The speed is the larger one of those before and after the tick.
-fn is_jump(
-    world: Option<&World>,
-    log: &StepLog,
-    body: BodyId,
-    previous: Pose,
-    current: Pose,
-    limit: f32,
-) -> bool {
-    if previous.position == current.position {
-        return false;
-    }
-    let way = metres(current.position - previous.position).length();
-    if way <= limit {
-        return false;
-    }
-    let Some(world) = world else { return false };
-    let speed = |poses: &Poses| poses.velocity(body).map_or(0.0, |velocity| metres(velocity).length());
-    way > 2.0 * speed(&log.before).max(speed(&log.after)) / world.config().tick_rate as f32
 }
 
 fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> Entity {
@@ -188,7 +205,7 @@ pub(crate) fn clear_status(mut status: ResMut<LockstepStatus>) {
 }
 
 pub(crate) fn remove_views(mut commands: Commands, mut views: ResMut<BodyViews>) {
-    views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
+    views.take_all().into_iter().for_each(|view| commands.entity(view.entity).try_despawn());
 }
 
 pub(crate) fn send_events<G: LockstepGame>(

@@ -153,8 +153,8 @@ impl BodyViews {
         slot.take_if(|view| view.body == body).map(|view| view.entity)
     }
 
-    pub(crate) fn take_all(&mut self) -> Vec<Entity> {
-        self.slots.drain(..).flatten().map(|view| view.entity).collect()
+    pub(crate) fn take_all(&mut self) -> Vec<View> {
+        self.slots.drain(..).flatten().collect()
     }
 }
 

@@ -9,12 +9,12 @@ use bevy::prelude::*;
 use bevy::reflect::GetPath;
 use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::*;
-use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
-use lockstep2d::math::Fx;
+use lockstep2d::math::{Fx, Vec2 as FixedVec2};
 use lockstep2d::solver::Revolute;
-use lockstep2d::world::Config;
+use lockstep2d::world::{Command, Config};
 
 fn sandbox_app() -> App {
     let mut app = App::new();
@@ -49,11 +49,15 @@ fn spawn_level(world: &mut World) -> Result<[Entity; 3], WorldError> {
 
 fn start(app: &mut App) -> [Entity; 3] {
     let entities = spawn_level(app.world_mut()).unwrap();
+    start_level(app);
+    entities
+}
+
+fn start_level(app: &mut App) {
     let commands = build_level(app.world_mut(), Config::default()).unwrap();
     assert_eq!(commands.len(), 4);
     let setup = SandboxSetup { commands, ..SandboxSetup::default() };
     app.insert_resource(Lockstep::<Sandbox>::local(&setup).unwrap());
-    entities
 }
 
 #[test]
@@ -76,6 +80,29 @@ fn entities_become_the_views_of_the_bodies_that_they_describe() {
     let distance = bar.position().length();
     assert!((distance - Fx::ONE).abs() < fx!(0.01), "{distance}");
     assert!(bar.position().y < fx!(-0.3));
+}
+
+#[test]
+fn entities_of_a_level_become_the_views_of_its_next_game() {
+    let mut app = sandbox_app();
+    let entities = start(&mut app);
+    (0..30).for_each(|_| app.update());
+    // Describes the level again, with the same entities.
+    let again = spawn_level(app.world_mut()).unwrap();
+    for (entity, other) in entities.into_iter().zip(again) {
+        let body = app.world_mut().entity_mut(other).take::<SpawnBody>().unwrap();
+        app.world_mut().entity_mut(entity).insert(body);
+        app.world_mut().despawn(other);
+    }
+    let [ground, bar, ball] = entities;
+    let joint = SpawnJoint::new([ground, bar], Revolute::new(), (fx!(0), fx!(0)));
+    app.world_mut().entity_mut(ball).insert(joint);
+    start_level(&mut app);
+    (0..3).for_each(|_| app.update());
+    let mut labels: Vec<_> = app.world_mut().query::<(&BodyView, &Label)>().iter(app.world()).collect();
+    labels.sort_by_key(|(view, _)| view.body().index());
+    assert_eq!(labels.iter().map(|(_, label)| label.0).collect::<Vec<_>>(), ["ground", "bar", "ball"]);
+    assert_eq!(app.world_mut().query::<&BodyView>().iter(app.world()).count(), 3);
 }
 
 #[test]
@@ -110,6 +137,72 @@ fn a_hand_drags_what_it_grabs() {
     let fallen = app.world().get::<Transform>(ball).unwrap().translation.truncate();
     assert!(fallen.y < goal.y - 200.0);
     assert_eq!(app.world().resource::<Lockstep<Sandbox>>().game().refused(), 0);
+}
+
+#[test]
+fn a_body_that_is_released_during_a_pause_is_not_pulled() {
+    let mut app = sandbox_app();
+    let [_, _, ball] = start(&mut app);
+    (0..60).for_each(|_| app.update());
+    let at = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    let body = app.world().get::<BodyView>(ball).unwrap().body();
+    app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
+    app.world_mut().resource_mut::<DragHand>().hold(at);
+    app.update();
+    app.world_mut().resource_mut::<DragHand>().move_to(at + Vec2::new(0.0, 900.0));
+    app.update();
+    let pending = app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).clone();
+    assert!(matches!(pending[..], [Command::ApplyForce { .. }]), "the latest pull: {pending:?}");
+    app.world_mut().resource_mut::<DragHand>().release();
+    app.update();
+    app.world_mut().resource_mut::<Lockstep<Sandbox>>().resume();
+    (0..3).for_each(|_| app.update());
+    let physics = app.world().resource::<Lockstep<Sandbox>>().world().unwrap();
+    let velocity = physics.body(body).unwrap().velocity();
+    assert!(velocity.length() < fx!(0.1), "{velocity:?}");
+}
+
+#[test]
+fn a_drag_keeps_the_forces_of_the_game() {
+    let mut app = sandbox_app();
+    let [_, _, ball] = start(&mut app);
+    app.update();
+    let body = app.world().get::<BodyView>(ball).unwrap().body();
+    let at = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    app.world_mut().resource_mut::<DragHand>().hold_body(body, at);
+    app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
+    let (force, point) = (FixedVec2::new(fx!(3), fx!(0)), FixedVec2::default());
+    let wind = Command::ApplyForce { body, force, point };
+    app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(wind.clone());
+    (0..3).for_each(|_| app.update());
+    let pending = app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).clone();
+    assert!(pending.len() == 2 && pending[0] == wind, "{pending:?}");
+}
+
+#[test]
+fn a_hand_drags_only_dynamic_bodies_of_the_current_game() {
+    let mut app = sandbox_app();
+    let [_, _, ball] = start(&mut app);
+    app.update();
+    let body = app.world().get::<BodyView>(ball).unwrap().body();
+    let at = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    app.world_mut().resource_mut::<DragHand>().hold_body(body, at);
+    app.update();
+    let fix = Command::SetKind { body, kind: BodyKind::Fixed };
+    app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(fix);
+    let refused = |app: &App| app.world().resource::<Lockstep<Sandbox>>().game().refused();
+    (0..3).for_each(|_| app.update());
+    // The pull of the tick in which the body became fixed.
+    assert_eq!(refused(&app), 1);
+    (0..10).for_each(|_| app.update());
+    assert_eq!(refused(&app), 1);
+    assert_eq!(app.world().resource::<DragHand>().body(), Some(body));
+    // In the next game, another body may have this id.
+    start(&mut app);
+    app.update();
+    assert_eq!(app.world().resource::<DragHand>().body(), None);
+    let commands = app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).clone();
+    assert_eq!(commands, []);
 }
 
 #[test]

@@ -186,6 +186,30 @@ fn a_view_that_the_game_removes_is_replaced() {
 }
 
 #[test]
+fn a_transform_that_the_game_replaces_is_written_again() {
+    let mut app = app(local(), 1, TICK);
+    (0..30).for_each(|_| app.update());
+    // The body of this view is fixed, so its pose never changes.
+    let (_, view) = app.world().resource::<BodyViews>().iter().next().unwrap();
+    app.world_mut().entity_mut(view).insert(Transform::from_xyz(5e3, 5e3, 3.0));
+    app.update();
+    check_views(&mut app);
+    assert_eq!(app.world().get::<Transform>(view).unwrap().translation.z, 3.0);
+    let written = |app: &App| app.world().entity(view).get_change_ticks::<Transform>().unwrap().changed;
+    app.update();
+    let before = written(&app);
+    (0..5).for_each(|_| app.update());
+    assert_eq!(written(&app), before, "a view at rest is not written without a reason");
+    // The scale changes while the view is disabled.
+    app.world_mut().entity_mut(view).insert(Disabled);
+    app.world_mut().resource_mut::<LockstepSettings>().pixels_per_metre = 7.0;
+    app.update();
+    app.world_mut().entity_mut(view).remove::<Disabled>();
+    app.update();
+    check_views(&mut app);
+}
+
+#[test]
 fn an_input_given_once_counts_once() {
     for frame in [Duration::from_millis(3), Duration::from_millis(60)] {
         let mut app = app(local(), 1, frame);
@@ -216,6 +240,32 @@ fn an_input_given_once_is_not_used_by_the_next_game() {
     assert_eq!(tick(&app), 1);
     let lockstep = app.world().resource::<Lockstep<Arena>>();
     assert_eq!(lockstep.game().state_hash(), game.state_hash());
+}
+
+#[test]
+fn an_input_given_once_is_not_used_by_a_game_that_begins_in_the_same_frame() {
+    #[derive(Resource)]
+    struct Restart;
+    fn shoot_and_restart(
+        mut inputs: ResMut<Inputs<Arena>>,
+        restart: Option<Res<Restart>>,
+        mut commands: Commands,
+    ) {
+        if restart.is_some() {
+            *inputs.once(0) = arena::SHOOT;
+            commands.insert_resource(local());
+            commands.remove_resource::<Restart>();
+        }
+    }
+    let mut app = app(local(), 1, TICK);
+    app.add_systems(bevy::app::RunFixedMainLoop, shoot_and_restart.in_set(LockstepSystems::Inputs));
+    (0..10).for_each(|_| app.update());
+    app.insert_resource(Restart);
+    app.update();
+    let lockstep = app.world().resource::<Lockstep<Arena>>();
+    assert_eq!(lockstep.tick(), 1);
+    let bodies = local().world().unwrap().body_count();
+    assert_eq!(lockstep.world().unwrap().body_count(), bodies, "nobody has shot");
 }
 
 #[test]

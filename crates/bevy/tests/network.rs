@@ -13,7 +13,8 @@ use common::{Heard, TICK, app, check_views};
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{LinkConditions, Network, PeerEvent, PeerIdentity, PeerOptions};
-use lockstep2d::replay::{Limits, Step, VerifiedReplay, verify};
+use lockstep2d::replay::{Limits, Step, Verdict, VerifiedReplay, verify};
+use lockstep2d::session::Event;
 
 fn identity(number: u64) -> PeerIdentity {
     PeerIdentity::new([number, number * 77 + 1, number * 91 + 5, number * 13 + 7])
@@ -160,6 +161,67 @@ fn every_prediction_is_confirmed_or_retracted_when_a_match_has_ended() {
         }
     }
     assert!(late > 0, "no prediction near an end was wrong");
+}
+
+#[test]
+fn a_replay_that_is_saved_in_mid_match_changes_nothing() {
+    let network = bad_network();
+    let (setup, options) = (Setup::default(), PeerOptions { delay: (1, 1), ..PeerOptions::rollback() });
+    let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.port(2), Network::address(1)).unwrap();
+    let mut players = [(host, 11), (guest, 29)].map(|(game, seed)| Player::new(game, seed));
+    let mut guessed = 0;
+    for frame in 0..900 {
+        network.set_time(network.time() + TICK);
+        players.iter_mut().for_each(Player::update);
+        let mut host = players[0].app.world_mut().resource_mut::<Lockstep<Arena>>();
+        if frame % 60 != 59 || host.confirmed() == 0 {
+            continue;
+        }
+        let state = |host: &Lockstep<Arena>| (host.tick(), host.confirmed(), host.game().state_hash());
+        let before = state(&host);
+        let verdict = verify::<Arena>(&host.replay_so_far().unwrap(), &Limits::default());
+        assert!(matches!(verdict, Verdict::Match { ticks, .. } if ticks == before.1), "{verdict}");
+        assert_eq!(state(&host), before);
+        guessed += before.0 - before.1;
+    }
+    assert!(guessed > 10, "only {guessed} ticks had to be played again");
+    let end = players.iter().map(Player::confirmed).min().unwrap();
+    let events = players.each_ref().map(|player| player.events(1, end));
+    assert!(events[0].len() > 50 && events[0] == events[1]);
+    let heard = players[0].heard();
+    let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
+    let predicted = heard.predicted.len() - heard.retracted.len();
+    assert!(predicted >= confirmed && predicted - confirmed < 40, "{predicted} {confirmed}");
+}
+
+#[test]
+fn a_pause_before_a_seat_is_requested_when_there_is_a_seat() {
+    let network = bad_network();
+    let (setup, options) = (Setup::default(), PeerOptions::rollback());
+    let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.port(2), Network::address(1)).unwrap();
+    let mut players = [(host, 11), (guest, 29)].map(|(game, seed)| Player::new(game, seed));
+    let mut pauses = Vec::new();
+    for is_paused in [true, false] {
+        let mut guest = players[1].app.world_mut().resource_mut::<Lockstep<Arena>>();
+        if is_paused {
+            guest.pause()
+        } else {
+            guest.resume()
+        }
+        for _ in 0..200 {
+            network.set_time(network.time() + TICK);
+            players.iter_mut().for_each(Player::update);
+            let mut events = players[0].app.world_mut().resource_mut::<Messages<MatchEvent>>();
+            pauses.extend(events.drain().filter_map(|event| match event.0 {
+                PeerEvent::Session(Event::Pause { paused, .. }) => Some(paused),
+                _ => None,
+            }));
+        }
+        assert_eq!(players[1].app.world().resource::<Lockstep<Arena>>().tick() == 0, is_paused);
+    }
+    assert_eq!(pauses, [true, false]);
 }
 
 /// Checks that all players have the same confirmed events, and that each predicted event is sent once.

@@ -60,9 +60,15 @@ impl Screen {
     }
 
     fn act(&mut self, action: PointerAction) {
-        let target = NormalizedRenderTarget::None { width: 100, height: 100 };
-        let location = Location { target, position: Vec2::ZERO };
-        self.app.world_mut().write_message(PointerInput::new(PointerId::Mouse, location, action));
+        self.act_in_a_frame(&[action]);
+    }
+
+    fn act_in_a_frame(&mut self, actions: &[PointerAction]) {
+        for action in actions {
+            let target = NormalizedRenderTarget::None { width: 100, height: 100 };
+            let location = Location { target, position: Vec2::ZERO };
+            self.app.world_mut().write_message(PointerInput::new(PointerId::Mouse, location, action.clone()));
+        }
         self.app.update();
     }
 
@@ -152,4 +158,54 @@ fn a_pointer_drags_a_dynamic_body_until_its_button_is_up() {
     assert_eq!(screen.held(), None);
     (0..60).for_each(|_| screen.app.update());
     assert!(screen.ball().y < 40.0, "{}", screen.ball());
+}
+
+#[test]
+fn layers_are_in_front_of_each_other() {
+    let mut screen = Screen::new();
+    let ball = screen.app.world().resource::<BodyViews>().entity(screen.bodies[1]).unwrap();
+    screen.app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(Command::SetTransform {
+        body: screen.bodies[1],
+        position: lockstep2d::math::Vec2::new(fx!(2), fx!(0)),
+        angle: Default::default(),
+    });
+    screen.app.update();
+    screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
+    for (z, front) in [(1.0, 1), (-1.0, 0)] {
+        // The view of the ball is in a layer, and its own z is 0.
+        let layer = screen.app.world_mut().spawn(Transform::from_xyz(0.0, 0.0, z)).id();
+        screen.app.world_mut().entity_mut(ball).insert(ChildOf(layer));
+        screen.point_at(20.0, 0.0);
+        screen.click();
+        assert_eq!(screen.clicked(), [screen.bodies[front]]);
+    }
+}
+
+#[test]
+fn a_pointer_that_is_released_and_pressed_in_one_frame_holds_what_it_presses() {
+    use PointerAction::{Press, Release};
+    const LEFT: PointerButton = PointerButton::Primary;
+    let mut screen = Screen::new();
+    let spawn = Command::Spawn {
+        body: BodyDef::dynamic().position((fx!(-3), fx!(1.5))),
+        shapes: vec![ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())],
+    };
+    screen.app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(spawn);
+    screen.app.update();
+    screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
+    let second = screen.app.world().resource::<BodyViews>().iter().nth(2).unwrap().0;
+    screen.point_at(20.0, 15.0);
+    screen.act(Press(LEFT));
+    assert_eq!(screen.held(), Some(screen.bodies[1]));
+    screen.point_at(-30.0, 15.0);
+    screen.act_in_a_frame(&[Release(LEFT), Press(LEFT)]);
+    assert_eq!(screen.held(), Some(second));
+    screen.point_at(0.0, 500.0);
+    screen.act_in_a_frame(&[Release(LEFT), Press(LEFT)]);
+    assert_eq!(screen.held(), None, "it is pressed beside all bodies");
+    screen.point_at(20.0, 15.0);
+    screen.act_in_a_frame(&[Release(LEFT), Press(LEFT), Release(LEFT)]);
+    assert_eq!(screen.held(), None);
+    screen.act(Press(LEFT));
+    assert_eq!(screen.held(), Some(screen.bodies[1]));
 }

@@ -6,12 +6,12 @@ use std::time::Duration;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::*;
-use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
 use lockstep2d::math::{Angle, Vec2 as FixedVec2};
-use lockstep2d::world::Command;
+use lockstep2d::world::{Command, Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
 const TICK: Duration = Duration::from_nanos(16_666_667);
@@ -99,6 +99,65 @@ fn a_body_that_spins_about_a_distant_centre_is_drawn_on_its_way() {
     let ways = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let largest = ways.fold(0.0_f32, f32::max);
     assert!((0.6..1.0).contains(&largest), "{heights:?}");
+}
+
+/// A game whose world makes four steps in a tick.
+struct FourSteps(World);
+
+impl Game for FourSteps {
+    type Setup = ();
+    type Input = ();
+    type Save = Snapshot;
+    const RULES: RulesId = RulesId { name: "four-steps", version: 1 };
+
+    fn new((): &()) -> Result<Self, SetupError> {
+        let config = Config { tick_rate: 240, ..Config::default() };
+        let build = || -> Result<World, WorldError> {
+            let mut world = World::new(config)?;
+            world.spawn(&BodyDef::dynamic().velocity((fx!(0), fx!(300))), &[ball()])?;
+            Ok(world)
+        };
+        build().map(FourSteps).map_err(|error| SetupError { why: error.to_string() })
+    }
+    fn players(&self) -> u32 {
+        1
+    }
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+    fn step(&mut self, _: &[()]) {
+        (0..4).for_each(|_| self.0.step());
+    }
+    fn state_hash(&self) -> StateHash {
+        self.0.state_hash()
+    }
+    fn save(&self) -> Snapshot {
+        self.0.save()
+    }
+    fn load(&mut self, save: &Snapshot) {
+        self.0.restore(save);
+    }
+    fn work(&self, _: &[()]) -> u64 {
+        4 * self.0.work(0, 0)
+    }
+    fn world(&self) -> Option<&World> {
+        Some(&self.0)
+    }
+}
+
+#[test]
+fn a_fast_body_is_drawn_on_its_way_if_a_tick_has_several_steps() {
+    let mut app = app(Lockstep::<FourSteps>::local(&()).unwrap(), TICK / 4);
+    (0..20).for_each(|_| app.update());
+    let view = app.world().resource::<BodyViews>().iter().next().unwrap().1;
+    let mut height = || {
+        app.update();
+        app.world().get::<Transform>(view).unwrap().translation.y
+    };
+    let heights: Vec<f32> = (0..40).map(|_| height()).collect();
+    // The body moves 5 m in a tick, which is 1.25 m in each of four frames.
+    let largest = heights.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0_f32, f32::max);
+    assert!((1.0..1.5).contains(&largest), "{heights:?}");
 }
 
 /// A game whose `load` forgets the score.

@@ -4,7 +4,7 @@ use core::fmt;
 
 use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{Peer, PeerDesync, PeerError, Transport};
-use lockstep2d::session::{Address, Status};
+use lockstep2d::session::{Address, PeerId, Session, Status};
 
 use super::FrameTime;
 use crate::error::LockstepError;
@@ -45,14 +45,52 @@ pub(crate) struct MatchDriver<G: LockstepGame> {
     peer: Peer<Observed<G>, AnyTransport>,
     /// Time since the last tick, in ticks. It is estimated, because the session lengthens and shortens its ticks.
     phase: f32,
+    /// Id of this peer in the session in which the last error occurred. `None` if there was no session or no error.
+    failed_as: Option<PeerId>,
 }
 
 impl<G: LockstepGame> MatchDriver<G> {
     pub(crate) fn new(peer: Peer<Observed<G>, AnyTransport>) -> Self {
-        MatchDriver { peer, phase: 0.0 }
+        MatchDriver { peer, phase: 0.0, failed_as: None }
     }
 
     pub(crate) fn run(
+        &mut self,
+        time: FrameTime,
+        is_paused: bool,
+        inputs: &mut Inputs<G>,
+    ) -> Result<(), LockstepError> {
+        let result = self.play(time, is_paused, inputs);
+        if result.is_err() {
+            // The others would wait for a peer that exchanges packets and plays no more.
+            self.peer.leave();
+            self.failed_as = self.id();
+        }
+        result
+    }
+
+    /// Exchanges packets after an error, so that the others learn that this peer leaves. Returns whether the peer has
+    /// joined again, after [`Peer::ask`].
+    ///
+    /// # Errors
+    /// The contact has refused the new request. Errors that were returned before are not returned again.
+    pub(crate) fn run_failed(&mut self, time: FrameTime) -> Result<bool, LockstepError> {
+        let updated = self.peer.update(time.real_elapsed);
+        self.synchronise();
+        match updated {
+            Ok(()) => Ok(self.id().is_some_and(|id| Some(id) != self.failed_as)),
+            Err(error @ (PeerError::Refused { .. } | PeerError::Parameters(_))) => Err(error.into()),
+            // An error that stops the peer occurs again in each update.
+            Err(_) => Ok(false),
+        }
+    }
+
+    /// Id of this peer in its session.
+    fn id(&self) -> Option<PeerId> {
+        self.peer.session().map(Session::id)
+    }
+
+    fn play(
         &mut self,
         time: FrameTime,
         is_paused: bool,
