@@ -9,9 +9,9 @@ use lockstep2d_shove::Shove;
 
 /// Each scene, and its hash after 3000 ticks with seed 1.
 const GOLDENS: [(&str, &str); 3] = [
-    ("duel", "34b5bf2583a5f349eee546ad3b74ed24"),
-    ("match", "a20792f3a0bdbfbb42c74b26c7d25fd7"),
-    ("guests", "c60cd509c757a894e5143afd5424f0a5"),
+    ("duel", "e77611608b76d08a616500a9f00ce63f"),
+    ("match", "c4e54a6409f87b73e7e6305b07665ab7"),
+    ("guests", "865535dd2e0e259cb5c635f6373ce143"),
 ];
 
 fn replay(scene: &str) -> PathBuf {
