@@ -7,7 +7,7 @@ use lockstep2d::math::Vec2;
 use lockstep2d::world::Command;
 use lockstep2d_scenes::Scene;
 
-/// The input of the player: a single push, in tick 55.
+/// The true input of the player for a tick: a push of one body in tick 55, and nothing in other ticks.
 fn true_input(game: &Sandbox, tick: u64) -> Vec<Command> {
     let pushed = game.world().bodies().filter(|(_, body)| body.is_dynamic()).take(usize::from(tick == 55));
     pushed
@@ -30,7 +30,7 @@ fn main() -> Result<(), SetupError> {
         peer.step(&[input]);
     }
 
-    // The inputs of the last ten ticks are late. Until they arrive, this peer predicts that the player does nothing.
+    // This peer gets the inputs of the last ten ticks late. It first predicts that the player does nothing.
     let mut here = Sandbox::new(&setup)?;
     for _ in 0..50 {
         here.step(&[vec![]]);

@@ -1,5 +1,6 @@
-//! Measures the cost of rollback in multiples of the time of a step: a save with its hash, and a frame in which 8 ticks
-//! are simulated again. `cargo run --release --example rollback_cost [NUMBER OF BODIES]`.
+//! Measures the cost of rollback relative to the time of a step: of a save with its hash, and of a rollback frame,
+//! which restores a save and then simulates, saves and hashes 8 ticks. `cargo run --release --example rollback_cost
+//! [NUMBER OF BODIES]`.
 
 use std::error::Error;
 use std::time::Duration;
@@ -63,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut steps, mut saves, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     let mut kept = vec![world.save(); 16];
     for _ in 0..ROUNDS {
-        // Eight ticks without late inputs.
+        // A frame without rollback: eight ticks.
         let (mut step, mut save) = (Duration::ZERO, Duration::ZERO);
         let start = world.save();
         for slot in kept.iter_mut().take(TICKS as usize) {
@@ -75,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         steps.push(step / TICKS);
         saves.push(hundredths(save, step));
-        // Repeats these ticks.
+        // A rollback frame: goes back and simulates these ticks again.
         let frame = timed(|| {
             world.restore(&start);
             for slot in kept.iter_mut().skip(TICKS as usize) {

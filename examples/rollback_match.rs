@@ -15,8 +15,8 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // The network is in memory. With `Udp::bind("0.0.0.0:7000")?` instead of a `Port`, each peer can be a process of
-    // its own.
+    // The network is in memory. To run each peer in its own process, use `Udp::bind("0.0.0.0:7000")?` instead of a
+    // `Port`.
     let conditions = LinkConditions { loss: 10, ..LinkConditions::latency(Duration::from_millis(60)) };
     let network = Network::new(conditions, 1);
     let options = PeerOptions::rollback();
@@ -25,11 +25,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         Peer::host(&(), options, host, network.port(0))?,
         Peer::join(&(), options, guest, network.port(1), Network::address(0))?,
     ];
-    // The session decides on the end, so that all peers stop after the same tick.
+    // The peers agree on the end of the match, so that all of them stop after the same tick.
     peers[0].end_at(TICKS);
     let mut now = Duration::ZERO;
     while peers.iter().any(|peer| peer.status() != Some(Status::Closed)) {
-        // Simulated time. A game passes the real time since its start, and sleeps between updates.
+        // The time is simulated. A real game passes the time since its start, and sleeps between updates.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The players push the ball in opposite directions for one of every two seconds.
+/// Input of a player: the players push the ball in opposite directions for one second, and pause for the next one.
 fn push(peer: &Peer<Tug, Port>) -> i8 {
     let force = if peer.seats() == [0] { 3 } else { -2 };
     if peer.tick() % 120 < 60 { force } else { 0 }

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let mut now = Duration::ZERO;
     loop {
-        // Simulated time. A game passes the real time since its start, and sleeps between updates.
+        // The time is simulated. A real game passes the time since its start, and sleeps between updates.
         now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {

@@ -19,7 +19,7 @@ const LAYOUT: Layout = bincode::config::standard().with_little_endian().with_fix
 ///
 /// ```
 /// use lockstep2d::codec::{self, DecodeError};
-/// // A number of four bytes: complete, cut, and read as another type.
+/// // Four bytes that encode a `u32` are decoded completely, then without the last byte, then as a `u16`.
 /// let bytes = codec::encode(&0x0102_0304_u32);
 /// assert_eq!(codec::decode::<u32>(&bytes), Ok(0x0102_0304));
 /// assert!(matches!(codec::decode::<u32>(&bytes[..3]), Err(DecodeError::Invalid { .. })));
@@ -89,8 +89,8 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. If a string lacks at most this
-/// many bytes, the decoder reports an unexpected end. If it lacks more, the decoder reports an exceeded limit.
+/// Number of bytes by which the decoder's limit exceeds the input: the size of a `u128`. If at most this many bytes of
+/// a string are missing from the input, the decoder reports an unexpected end, otherwise an exceeded limit.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.

@@ -38,7 +38,7 @@ impl StateHash {
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
         let digests = digests.into_iter();
-        // Small worlds need no allocation.
+        // The buffer has room for 32 digests without an allocation, which is enough for small worlds.
         let mut bytes = SmallVec::<[u8; 512]>::with_capacity(digests.size_hint().0 * size_of::<Self>());
         digests.for_each(|digest| bytes.extend_from_slice(&digest.bytes()));
         Self::of_bytes(&bytes)
@@ -88,7 +88,8 @@ mod tests {
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");
         let bytes: Vec<u8> = (0..4096).map(byte).collect();
-        // The lengths include those at which the algorithm changes, and many positions in a stripe and in a block.
+        // The lengths include those at which the algorithm changes. They end at many positions within the stripes and
+        // blocks of XXH3.
         let lengths = (0..600).chain((600..4096).step_by(61));
         let all = StateHash::of_digests(lengths.map(|length| StateHash::of_bytes(&bytes[..length])));
         assert_eq!(all, StateHash(0x895a_7f64_9a6f_6e88_c604_0708_9b0a_5435));

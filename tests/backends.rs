@@ -15,7 +15,8 @@ use lockstep2d_tests::sweep;
 
 const HASHES: &str = "tests/backends.txt";
 
-/// Scenes and ticks. The heavy box of `smash` needs a while to reach the block.
+/// Scenes and numbers of ticks. `smash` gets more ticks, because its heavy box needs a while to reach the block of
+/// small boxes.
 const SCENES: [(&str, u64); 10] = [
     ("large_pyramid", 60),
     ("many_pyramids", 60),
@@ -29,7 +30,8 @@ const SCENES: [(&str, u64); 10] = [
     ("compounds", 60),
 ];
 
-/// The hash at the end of a scene, and the statistics of its last tick.
+/// The hash of a scene after `ticks` ticks, and the statistics of its last tick. `choose` sets the backend or the
+/// number of threads, and returns whether this machine supports it.
 fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (String, StepStats) {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game =
@@ -43,7 +45,8 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Expects that all variants end in the hashes of the file. `choose` applies a variant to a world.
+/// Expects that the scenes end in the hashes of the file with each variant: a backend or a number of threads. `choose`
+/// applies a variant to a world.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -84,15 +87,15 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// The test of the backends runs on one thread. This test runs on several.
+/// The preceding test runs on one thread. This test runs on several, with the default backend.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
-/// In a game the number of threads changes between ticks: a world uses threads only in ticks that become shorter with
-/// threads.
+/// In a game the number of threads changes from tick to tick, because a world compares times, and uses several
+/// threads only in ticks that these make shorter.
 #[test]
 #[cfg(feature = "parallel")]
 fn the_number_of_threads_may_change_between_ticks() {

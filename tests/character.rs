@@ -31,7 +31,8 @@ fn clearance(world: &World, mover: &Mover, position: Vec2<Fx>) -> Fx {
     distances.min().expect("a level")
 }
 
-/// Walks under gravity, and returns every state.
+/// Walks at `speed` m/s under gravity (10 m/s² at 60 ticks a second), and returns the state after each tick. Expects
+/// that the mover touches no shape.
 fn walk(world: &World, mover: &Mover, from: MoverState, speed: Fx, ticks: u32) -> Vec<MoverState> {
     let mut state = from;
     let step = |_| {
@@ -66,7 +67,7 @@ fn the_character_of_the_scene_enters_nothing() {
     }
     assert_eq!(game.refused(), 0);
     assert!(least > fx!(0.00005), "{least}");
-    // The character has reached the left wall, and has jumped past the foot of the steep slope at 20 m.
+    // The character has reached the left wall, and has jumped past the foot of the steep slope, which is at 20 m.
     assert!((way.0 - fx!(-9.7)).abs() < fx!(0.001), "{way:?}");
     assert!(way.1 > fx!(19.7) && way.1 < fx!(20.6), "{way:?}");
     assert!(trace[595].y < trace[560].y - fx!(0.1), "expected the character to slide down: {:?}", trace[595]);
@@ -89,11 +90,12 @@ fn the_character_on_a_spring_leg_gets_about() {
         trace.push(game.world().body(ids[0]).expect("there").position());
     }
     assert_eq!(game.refused(), 0);
-    // The centre of mass is 0.9 m above the ground, and 0.1 m above the origin of the body.
+    // At rest the origin of the body is 0.8 m above the ground: the centre of mass is at 0.9 m, and the origin is 0.1 m
+    // below it.
     let rest = trace[25];
     assert!((rest.y - fx!(0.8)).abs() < fx!(0.005), "at rest above the floor: {rest:?}");
     let jump = trace[30..60].iter().map(|place| place.y).max().expect("some");
-    // A jump at 5.5 m/s rises by 1.5 m, changed a little by the spring leg.
+    // A jump at 5.5 m/s rises by 1.5 m from 0.8 m. The spring leg changes this a little.
     assert!((fx!(2.1)..fx!(2.5)).contains(&jump), "{jump}");
     assert!(pushed > fx!(10.5), "the first crate is pushed: {pushed}");
     let furthest = trace.iter().max_by_key(|place| place.x).expect("some");
@@ -115,7 +117,8 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // The character has walked 6 m along the slope, except that the round foot cuts the corner at the bottom.
+            // The character walks 3 m on the level and then 6 m up the slope, a little less because its round foot cuts
+            // the corner at the bottom.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");
@@ -133,7 +136,7 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
                 state.velocity.y -= fx!(1 / 6);
                 state = world.move_character(&mover, &state, QueryFilter::default()).state;
             }
-            // The character slides without friction, so that `y'' = g sin²`.
+            // The character slides without friction, so its downward acceleration is `g sin²` of the slope's angle.
             let sin = Fx::from_num(angle.sin());
             let expected = fx_mul(fx!(5), fx_mul(sin, sin));
             let fallen = middle.y - state.position.y;
@@ -163,7 +166,8 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // A character with the shape of a box leaves a step before it descends. It is off the ground in some ticks.
+            // On the way down, a box leaves the edge of each step before it falls to the next, so it is off the ground
+            // in some ticks.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");
@@ -302,8 +306,8 @@ fn a_lift_that_comes_up_takes_the_character_along() {
     }
 }
 
-/// The next move carries the rider by the whole displacement of the platform since the last move. A jump starts with
-/// the velocity of the platform.
+/// A rider need not be moved in every tick: the next move carries it by the whole displacement of the platform since
+/// the last one. A jump then starts with the velocity of the platform.
 #[test]
 fn a_rider_that_was_not_moved_for_some_ticks_keeps_the_speed_of_the_platform() {
     for (waits, teleport) in [(0, None), (1, None), (29, None), (0, Some(fx!(-20)))] {

@@ -7,7 +7,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A world, its bodies, destroyed bodies and shapes, and all joints ever added.
+/// A world, and lists of its bodies, of all destroyed bodies and shapes, and of all joints ever added.
 struct Churn {
     world: World,
     rng: Rng,
@@ -89,7 +89,7 @@ fn ten_thousand_bodies_come_and_go() {
     let mut churn = Churn::new();
     let mut twin: Option<World> = None;
     while churn.spawned < 10_000 {
-        // The test is about handles, not about large piles.
+        // Keeps the world small: the test is about handles, not about large piles.
         while churn.alive.len() > 150 {
             churn.despawn();
         }
@@ -109,7 +109,7 @@ fn ten_thousand_bodies_come_and_go() {
     assert!(churn.gone.len() > 9000 && churn.joints.len() > 500, "{} joints", churn.joints.len());
 }
 
-/// Makes equal changes to both worlds, and expects that they stay equal.
+/// Makes 500 equal changes and steps in both worlds, and expects that handles and hashes stay equal.
 fn replay_on_twin(churn: &mut Churn, twin: &mut World) {
     for _ in 0..500 {
         let mut other = Churn {

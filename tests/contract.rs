@@ -1,5 +1,5 @@
-//! For every scene, second runs, restores from bytes, rollbacks, cleared caches and another broad phase give equal
-//! hashes and events after every tick. The last hash is the one in `tests/goldens.txt`.
+//! For every scene, a second run, and runs with restores from bytes, rollbacks, cleared caches or another broad phase,
+//! have the hashes and events of the first run after every tick. The last hash is the one in `tests/goldens.txt`.
 
 use std::sync::{LazyLock, OnceLock};
 
@@ -15,7 +15,7 @@ struct Trace {
     events: Vec<Events>,
 }
 
-/// Hashes and events of a run. `perturb` runs before each tick and must not affect results.
+/// Hashes and events of a run. `perturb` is called before each tick. It does something that must not affect results.
 fn trace(scene: &Scene, ticks: u64, mut perturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
     let mut game =
         Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
@@ -43,10 +43,10 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
     assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
 }
 
-/// Largest number of compared ticks in the long run.
+/// Largest number of ticks of a scene that are compared in the long run.
 const TICKS_MAX: u64 = 300;
 
-/// The trace of an undisturbed run up to the tick of the golden. The tests share it.
+/// The trace of an undisturbed run up to the tick of the golden. It is computed once for all tests.
 fn undisturbed(scene: &Scene) -> &'static Trace {
     static TRACES: LazyLock<Vec<OnceLock<Trace>>> =
         LazyLock::new(|| ALL.iter().map(|_| OnceLock::new()).collect());
@@ -54,8 +54,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene with a number of ticks and the undisturbed trace. The number of ticks is that of the
-/// scene's golden, limited to [`TICKS_MAX`] in the long run. Otherwise the limit is 150, or 30 for a large scene.
+/// Calls `hold` for every scene, with a number of ticks and the undisturbed trace. The number of ticks is that of the
+/// scene's golden, but at most [`TICKS_MAX`] in the long run, and otherwise at most 150, or 30 for a large scene.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });
@@ -127,7 +127,7 @@ fn scratch_may_be_cleared_before_any_tick() {
 #[test]
 fn the_broad_phase_makes_no_difference() {
     each_scene(|scene, ticks, reference| {
-        // Brute force compares each shape with every other.
+        // Brute force compares each shape with every other one, which is slow for large scenes.
         let ticks = if shape_count(scene) > 2000 { 5 } else { ticks };
         let brute_force = |tick: u64, game: &mut Sandbox| {
             if tick == 0 {
@@ -138,7 +138,7 @@ fn the_broad_phase_makes_no_difference() {
     });
 }
 
-/// A committed hash catches an error that affects both of two compared runs.
+/// Comparisons of two runs miss an error that affects both in the same way. A committed hash catches it.
 #[test]
 fn every_scene_ends_in_its_golden() {
     let goldens = goldens();

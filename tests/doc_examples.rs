@@ -1,8 +1,8 @@
 //! Every public type is shown in use by an example of the documentation.
 //!
-//! A type is shown if Rust code in the documentation of its own top-level module uses its name. Each of the other
-//! crates counts as one module. Imports, hidden lines, comments and literals do not count. The lint `unreachable_pub`
-//! makes sure that users can name all types that are declared `pub`.
+//! A type is shown if Rust code in the documentation of its own top-level module uses its name. Each crate other than
+//! `lockstep2d` counts as one module. Uses in imports, hidden lines, comments and literals do not count. All types that
+//! are declared `pub` count as public, because the lint `unreachable_pub` makes sure that users can name them.
 
 mod source;
 
@@ -12,20 +12,20 @@ use source::{Source, files, tokens};
 
 const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
-/// Types without an example, and why.
+/// Types that need no example: module, name, reason.
 const WITHOUT: &[(&str, &str, &str)] = &[
     ("replay", "KeyframesFlaw", "printed as the reason in a `KeyframesError`, not handled"),
     ("report", "ReportFlaw", "printed as the reason in a `ReportError`, not handled"),
     ("crates/cli", "RandomError", "opaque: printed when the system has no random numbers"),
 ];
 
-/// Start of a macro call that declares a public type. The name of the type follows on a line of its own.
+/// First line of a macro call that declares a public type. The name of the type is alone on a later line of the call.
 const TYPE_MACRO: &str = "define_handle! {";
 
 #[derive(Default)]
 struct Module {
     types: Vec<String>,
-    /// Words of the code of all examples.
+    /// All words in the code of the examples, without imports.
     shown: BTreeSet<String>,
 }
 

@@ -11,7 +11,7 @@ use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
-/// A ground, a box at rest on it, a pendulum, and a lift. Gravity is tilted, so that a friction force acts on the box.
+/// A ground, a box at rest on it, a pendulum, and a lift. Gravity is tilted, so friction keeps the box from sliding.
 fn scene() -> World {
     build_scene().expect("a valid scene")
 }
@@ -53,7 +53,7 @@ fn every_layer_has_its_primitives() {
         (Style::ContactPoint(ContactProximity::Speculative), 0),
         (Style::ContactNormal(ContactProximity::Touching), 2),
         (Style::ContactNormal(ContactProximity::Speculative), 0),
-        // Fixed bodies have no arm.
+        // An arm is drawn from the centre of a movable body to the joint, so only the bob has one.
         (Style::JointArm, 1),
         (Style::JointAnchor, 2),
         (Style::JointGap, 1),
@@ -166,7 +166,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     world.despawn(boxes[2]).unwrap();
     assert_eq!(primitives(&world, layers), expected, "the same points, forces and colours");
 
-    // The next ticks equal those of a copy without cached contacts.
+    // The world continues like a copy that a restore has left without cached contacts.
     let mut restored = world.clone();
     restored.restore(&world.save());
     (0..30).for_each(|_| {
@@ -176,8 +176,8 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     });
 }
 
-/// Returns a world and the figures of its legend. A ball is joined to a fixed body 3 m away, and lies inside that
-/// body's sensor.
+/// Returns a world after one tick, and the figures of its legend. In the world, a joint of this kind connects a ball to
+/// a fixed body 3 m away. The ball is inside a sensor of the fixed body.
 #[expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();
@@ -276,9 +276,9 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    // Four bodies have shapes. The two dynamic ones appear again, as islands.
+    // Four bodies have shapes. The two dynamic ones have a second element, which shows their island.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
-    // The bodies, 12 styles, and the scale bar.
+    // A path for each of these six elements, one for each of 12 styles, and one for the scale bar.
     assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
     // The labels are the ids of four bodies and the error of the joint. The ground has no label, because its centre is
     // below the picture.
@@ -361,7 +361,7 @@ fn check_text(text: &str) {
     assert!(!text.chars().any(|c| c < ' ' && c != '\n'), "{text:?}");
 }
 
-/// The longest scale bar whose length fits in an `Fx` is 2 000 000 km long.
+/// The last case is the longest scale bar whose length fits an [`Fx`]: 2 000 000 km.
 #[test]
 fn the_label_of_a_bar_is_its_length() {
     let bars = [fx!(0.004), fx!(0.3), fx!(70), Fx::MAX].map(|most| Bar::up_to(|length| length <= most));

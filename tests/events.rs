@@ -1,4 +1,4 @@
-//! Each contact, however short, has one begin event, and one end event when it ends.
+//! Each contact, however short, has exactly one begin event when it begins, and one end event when it ends.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Impulses are proportional to a shape's width, reduced by its distance, and applied at its nearest point.
+//! The impulse of an explosion on a shape is proportional to the width that the shape shows to the explosion, decreases
+//! with the distance, and acts at the nearest point of the shape.
 
 use lockstep2d::body::{BodyDef, BodyId, Filter, Geometry, MassSource, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -31,7 +32,8 @@ fn near(a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
 fn a_ball_is_pushed_by_its_diameter_and_its_distance() {
     let explosion = Explosion { radius: fx!(3), falloff: fx!(2), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     let ball = Geometry::circle(fx!(0.5)).expect("valid");
-    // The surface is half a metre nearer than the centre. Without falloff, the speed is 10 N s / m * 1 m / 2 kg.
+    // Distances are of the ball's centre; its surface is half a metre nearer. Up to 3 m from the surface, there is no
+    // falloff, and the speed is 10 N s/m * 1 m / 2 kg.
     for (distance, speed) in [
         (fx!(1), fx!(5)),
         (fx!(3.5), fx!(5)),
@@ -75,7 +77,8 @@ fn the_push_is_as_wide_as_the_shape_and_meets_the_nearest_point() {
         fx!(2),
     );
     world.explode(&Explosion { radius: fx!(2.5), ..Explosion::new(Vec2::ZERO, fx!(10)) }).expect("valid");
-    // The plank is 2 m high. The impulse acts half a metre below its centre: w = r x P / (m k²) = -(-0.5) * 20 / 2.
+    // The plank is 2 m high, so its impulse is P = 20 N s to the right. It acts half a metre below the centre, which
+    // gives the angular velocity w = r x P / (m k²) = -(-0.5) * 20 / 2.
     assert!(near(velocity(&world, high), at(fx!(10), fx!(0))), "{:?}", velocity(&world, high));
     let spin = world.body(high).expect("there").angular_velocity();
     assert!((spin - fx!(5)).abs() < fx!(0.00001), "{spin}");

@@ -9,7 +9,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::World;
 
-/// A number that is small, ordinary or the maximum.
+/// A random number from 0 to `most`: below 0.001, below 10, any, or `most` itself.
 fn size(rng: &mut Rng, most: Fx) -> Fx {
     match rng.below(4) {
         0 => rng.range(Fx::ZERO, fx!(0.001)),

@@ -1,9 +1,9 @@
-//! Each module of the library uses only the modules below it. The test reads `use` lines and paths, including unit
-//! tests.
+//! Each module of the library uses only the modules below it in this picture. The test reads `use` lines and paths,
+//! including those in unit tests.
 //!
-//! Inside a module with folders, each folder uses only the folders listed for it, and files of different folders do not
-//! depend on each other in a circle. The tests of folders leave out unit tests. They count a re-export as a path to the
-//! file that defines the item. Calls of methods are not found.
+//! Inside the modules of [`FOLDERS`], each folder uses only the folders listed for it, and files of different folders
+//! do not depend on each other in a circle. The tests of these two rules ignore unit tests. A path to a re-export
+//! counts as a path to the file that defines the item. Calls of methods are not found.
 //!
 //! ```text
 //!             peer
@@ -85,7 +85,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "solver",
         &[
-            // The solver's own files list the stages of a sub-step.
+            // The files outside of folders call the stages of a sub-step in order.
             (".", &["contact", "joint", "integrate", "row"]),
             ("row", &["."]),
             ("contact", &[".", "row"]),
@@ -184,12 +184,12 @@ fn wrong_folders_and_circles_are_found() {
         assert!(uses > 0, "{used}");
     }
     assert_eq!(with("mod tests { use crate::m::Shown; }", "pub struct Shown;"), (0, 0), "a test");
-    // The allowed paths form a circle.
+    // Each of these paths is allowed, but together they form a circle.
     let circle = [root, a, b, ("src/m/b/y.rs", "use crate::m::c::Base; pub struct Shown;")];
     let there = ("src/m/c.rs", "use super::b::Shown; pub struct Base;");
     let there_and_back: Vec<_> = circle.iter().copied().chain([there]).collect();
     assert_eq!(wrong(&there_and_back), (0, 1));
-    // The module itself uses its re-export.
+    // A circle through a re-export: the module uses an item of a folder, which uses an item of the module.
     let own = [
         ("src/m/mod.rs", "mod b; pub struct Base(b::Holder);"),
         ("src/m/b/mod.rs", "mod y; pub use y::Shown; pub struct Holder(Shown);"),
@@ -306,7 +306,7 @@ fn upward_uses(place: &[String], code: &str) -> Vec<String> {
 fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut used = Vec::new();
-    // Whether each open brace opens an inline module.
+    // For each open brace, whether it opens an inline module.
     let mut braces = Vec::new();
     for at in 0..tokens.len() {
         match text(at) {
@@ -326,7 +326,7 @@ fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     used
 }
 
-/// First names of a path's tails: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
+/// First names of the path or paths that begin at `start`: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
 fn heads(tokens: &[Token], start: usize) -> Vec<Token> {
     if tokens[start].text != "{" {
         return vec![tokens[start].clone()];

@@ -1,4 +1,4 @@
-//! Inspection functions agree with theory.
+//! Forces, islands, solver colours, joint errors and other inspection functions return what theory predicts.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
@@ -26,7 +26,7 @@ fn run(world: &mut World, ticks: u32) {
     (0..ticks).for_each(|_| world.step());
 }
 
-/// Sums of the normal and friction forces.
+/// The sum of the normal forces of all contact points in N, and the sum of their friction forces in N.
 fn sum_of_forces(world: &World) -> (Fx, Fx) {
     let forces = world.contacts().flat_map(|contact| contact.forces().map(|(_, f)| f).collect::<Vec<_>>());
     forces.fold((Fx::ZERO, Fx::ZERO), |(normal, friction), f| (normal + f.normal, friction + f.friction))

@@ -48,7 +48,7 @@ const ALLOWED_UNSAFE: &[&str] = &[
 
 /// Comment that gives the reason for an `unsafe`.
 const REASON: &str = "// SAFETY: ";
-/// Largest number of lines from this comment down to the `unsafe`.
+/// Largest distance in lines from this comment down to the `unsafe`.
 const REASON_ABOVE: usize = 3;
 
 const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/simd/", "src/solver/", "src/world/"];
@@ -107,7 +107,7 @@ fn unexplained_unsafe(file: &Source) -> Vec<String> {
     wrong.map(|pair| format!("{}: unsafe without a reason", pair[0].line)).collect()
 }
 
-/// State with a `usize` or `isize`, whose width depends on the machine.
+/// Uses of `usize` and `isize`, whose width depends on the machine, in types that derive `Serialize`.
 fn machine_width_in_state(file: &Source) -> Vec<String> {
     let tokens = tokens(&file.text);
     let mut wrong = Vec::new();

@@ -1,4 +1,4 @@
-//! Compares the engines in a scene, in interleaved rounds.
+//! Runs a scene in every engine, in interleaved rounds, and compares the times.
 
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;

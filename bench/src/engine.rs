@@ -162,7 +162,8 @@ pub trait Engine {
     /// Size of the saved world as a file, in bytes.
     fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Number of bytes of the save in a slot that are not shared with the world. Box2D and rapier2d share none.
+    /// Number of bytes of the save in a slot that are not shared with the world. The saves of Box2D and rapier2d share
+    /// no bytes.
     fn held_bytes(&self, slot: usize) -> usize {
         self.saved_bytes(slot)
     }

@@ -1,5 +1,5 @@
-//! Measures how the time of a step grows with the number of bodies `n`: as `n^p`. The worlds have a similar number of
-//! contacts per body at each size.
+//! Measures the time of a step in worlds with different numbers of bodies `n`, and fits a power law `n^p` to the times.
+//! The number of contacts per body is similar at each size.
 
 use anyhow::{Result, anyhow};
 use indicatif::ProgressBar;
@@ -130,16 +130,16 @@ fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
 
 const DRUM: u32 = 484;
 
-/// A single drum, whose pile is deeper if it has more bodies. So the mix of work changes with the size, unlike in
-/// `drums`.
+/// A single drum. More bodies make its pile deeper, so the shares of the parts of a step change with the size, unlike
+/// in `drums`.
 fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     add_drum(&mut scene, Vec2::ZERO, bodies)?;
     Ok(scene.finish())
 }
 
-/// Adds a square drum full of boxes and balls, turned by 30 degrees. Its angular velocity gives the same Froude number
-/// at any size.
+/// Adds a square drum full of boxes and balls, turned by 30 degrees. Its angular velocity is chosen so that drums of
+/// all sizes have the same Froude number.
 pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
     // The walls leave room for the upright grid of bodies in the turned drum.

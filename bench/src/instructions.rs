@@ -1,4 +1,5 @@
-//! Counts the instructions of a step with callgrind. The counts depend neither on caches nor on other load.
+//! Counts the instructions of a step with callgrind. The counts depend neither on caches nor on the load of the
+//! machine.
 
 use std::process::Command;
 

@@ -67,7 +67,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         for (tick, events) in last.iter().enumerate() {
             execute(&mut world, events)?;
             let (stepping, ()) = timed(|| world.step());
-            // A game has one save for each tick of the rollback window, and reuses its memory.
+            // Like a game, keeps one save for each tick of the rollback window, and reuses the memory of these saves.
             let (saving, ()) = timed(|| world.save_into(&mut saves[tick]));
             let (hashing, _) = timed(|| world.state_hash());
             resimulating += stepping + saving + hashing;
@@ -120,7 +120,7 @@ fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }
 
-/// Measures the bytes in three kinds of worlds: with bodies only, with contacts, and with joints.
+/// Measures the bytes in three kinds of worlds: with bodies only, with bodies and contacts, and with bodies and joints.
 pub fn bytes() -> Result<Bytes> {
     let few = save_bytes(&scattered(1000)?) as f64;
     let many = save_bytes(&scattered(9000)?) as f64;
@@ -201,7 +201,8 @@ mod tests {
     fn bytes_are_told_apart() {
         let bytes = bytes().unwrap();
         assert_eq!(bytes.body, 52.0);
-        // A save also has 8 bytes for each contact without points.
+        // The sum also contains 8 bytes for each contact without points, but is divided by the number of contacts with
+        // points.
         assert!((88.0..90.0).contains(&bytes.contact), "{bytes:?}");
         // A joint takes a byte of flags, 4 bytes for its whole turns, and 4 bytes for each impulse that is not 0.
         assert!((5.0..=13.0).contains(&bytes.joint), "{bytes:?}");

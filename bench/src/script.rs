@@ -37,7 +37,7 @@ pub struct Script {
 }
 
 impl Script {
-    /// Records a scene in its full length, or `most_steps` steps of a longer one.
+    /// Records a scene, but at most its first `most_steps` steps.
     pub fn of_scene(name: &str, most_steps: Option<u64>) -> Result<Self> {
         let scene = Scene::find(name).ok_or_else(|| anyhow!("no scene {name}"))?;
         let steps = most_steps.map_or(scene.ticks, |most| most.min(scene.ticks));
@@ -78,7 +78,8 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        // This world is never stepped, so a moved body jumps to its target. The next `MoveTo` starts from there.
+        // This world is never stepped, so a `MoveTo` would never take effect. Instead, the body is placed at its target
+        // at once, from which the next `MoveTo` starts.
         let at_once = match command {
             Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
             ref other => other.clone(),

@@ -1,5 +1,5 @@
-/* Misuses the API: wrong handles, null pointers, short buffers, wrong sizes, threads. Calls have to return the expected
- * codes. bindings/c/test runs this program under AddressSanitizer and valgrind. */
+/* Misuses the API: wrong handles, null pointers, short buffers, wrong sizes, objects used by several threads. Calls
+ * have to return the expected codes. bindings/c/test runs this program under AddressSanitizer and valgrind. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,7 +8,8 @@ local Game = require("game")
 -- Milliseconds between updates.
 local INTERVAL = 4
 
---- Collects garbage, and overwrites the freed memory by new allocations, so that a dangling reference shows up.
+--- Collects garbage, and overwrites the freed memory by new allocations, so that a dangling reference reads wrong
+--- values.
 local function collect()
     collectgarbage()
     local filled = {}
@@ -17,8 +18,8 @@ local function collect()
     end
 end
 
---- Makes two peers, and a function that delivers the packets between them. `changes` are settings that differ from
---- those below.
+--- Makes two peers, and a function that delivers the packets between them. `changes` replaces some of the settings
+--- below.
 local function connect(new_game, changes)
     local peers, flying = {}, {}
     for index = 1, 2 do
@@ -80,7 +81,7 @@ end
 
 play(Game.new, 300)
 
--- A game may return a hash that is a reference into memory that nothing keeps alive.
+-- `hash` of a game may return a reference to memory that the garbage collector then frees.
 play(function()
     local game = Game.new()
     function game.hash()
@@ -120,7 +121,8 @@ local text = ls.hex(before)
 collect()
 assert(ls.hex(before) == text, "the hash has changed after a collection")
 
--- A peer that returns to its seat passes its key and secret. The other numbers are random bytes.
+-- A peer that returns to its seat passes its own `key` and `secret`. The numbers that `settings` lacks are taken from
+-- `random`.
 local host, config = ls.match_host, nil
 ls.match_host = function(given, ...)
     config = given
@@ -147,7 +149,8 @@ local function raises(text, peer, step, read)
     assert(not done and tostring(why):match(text), tostring(why))
 end
 
--- After an error of the game, its state lacks a tick, and the driver plays no more ticks.
+-- After an error of the game in a tick, the state of the game is not that of the match, so the driver plays no more
+-- ticks.
 local broken, steps = Game.new(), 0
 function broken.step()
     steps = steps + 1
@@ -164,7 +167,7 @@ for step = 1001, 1200 do
 end
 assert(steps == 20 and alone.tick == 19, steps .. " steps, tick " .. alone.tick)
 
--- While `read` fails, the driver keeps its events, and other peers can join.
+-- While `read` fails, the driver keeps the events for the next update that succeeds, and other peers can join.
 for text, wrong in pairs({
     ["no gamepad"] = function() error("no gamepad") end,
     ["ls2d_match_advance"] = function() return "\0\0" end,
@@ -220,7 +223,8 @@ for index, event in pairs(desyncs) do
 end
 assert(desyncs[1] or desyncs[2], "the states differ")
 
--- While a player requests a pause, all players wait and keep their seats. Afterwards, no missed ticks are played.
+-- While a player requests a pause, all players wait and keep their seats. Afterwards, the driver does not play
+-- additional ticks to catch up with the time of the pause.
 both, deliver = connect(Game.new, { guess = 6 })
 local seen = {}
 local function run(from, to, read)
@@ -243,7 +247,7 @@ run(501, 550)
 assert(both[1]:is_paused() and both[2]:is_paused())
 local ticks = { both[1].tick, both[2].tick }
 assert(ticks[1] > 60)
--- Three seconds are more than the patience.
+-- These 750 steps take three seconds, which is longer than the patience.
 run(551, 1300, function() error("no inputs are read during a pause") end)
 both[2]:pause(true)
 run(1301, 1350)

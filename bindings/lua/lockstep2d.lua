@@ -5,7 +5,8 @@
 --- A function that returns a status in C raises an error if it fails. Otherwise it returns true for `LS2D_OK`, and
 --- false for `LS2D_NONE` (nothing to return). Other functions return their result.
 ---
---- Numbers that enter the state are integers (`ls.fx`). Lua's own numbers are floats, for drawing.
+--- Numbers that enter the state are fixed-point integers, made by `ls.fx`. Lua's own numbers are floats: use them only
+--- for drawing.
 local ffi = require("ffi")
 
 local ls = {}
@@ -45,7 +46,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- For each function with arguments of type `ls2d_fx`, their positions.
+-- For each function with arguments of type `ls2d_fx`, the list of the positions of these arguments.
 local fx_positions = {}
 for name, parameters in header:gmatch("\n[%w_]+ (ls2d_[%w_]+)%(([^()]*)%);") do
     local position, found = 0, {}
@@ -69,7 +70,7 @@ local function last_error()
 end
 
 --- Makes a function refuse Lua numbers as arguments of type `ls2d_fx`, because LuaJIT would convert them to raw
---- integers. The number 0 is allowed, because its raw integer is 0, too.
+--- integers. The Lua number 0 is allowed, because the fixed-point number 0 also has the raw integer 0.
 local function refuse_numbers(name, raw)
     local positions = fx_positions[name]
     return not positions and raw or function(...)

@@ -1,12 +1,13 @@
 --- Plays a game in a match of `ls2d_match_host` or `ls2d_match_join`.
 ---
 --- The game has
---- - `step(inputs, absent)`: advances by a tick. `inputs` is a string with the inputs of all seats, `absent` has a bit
----   for each empty seat;
---- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores a copy, frees a copy;
+--- - `step(inputs, absent)`: advances by a tick. `inputs` is a string with the inputs of all seats in order, `absent`
+---   has a bit for each empty seat;
+--- - `save()` returns a copy of the whole state, `load(saved)` restores a copy, `drop(saved)` frees a copy;
 --- - `hash()`: returns an `ls2d_hash` of the whole state. The driver copies the hash. `ls.world_hash` writes into an
 ---   `ffi.new("ls2d_hash")`;
---- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
+--- - `encode()` returns the state as a string, `decode(bytes)` replaces the state by such a string, for peers that
+---   join.
 ---
 --- `send(to, packet)` sends a packet to an address. `to` and `packet` are strings.
 local ffi = require("ffi")
@@ -16,13 +17,13 @@ local Driver = {}
 Driver.__index = Driver
 
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
--- Largest step back of the time in seconds that is no error.
+-- A time that lies at most this many seconds before an earlier time is not an error.
 local BACK_MAX = 1
 
 --- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
 --- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` is a string of 28
---- random bytes, which systems without /dev/urandom need. If `settings` lacks `peer`, `key` or `secret`, the value is
---- taken from the random bytes.
+--- random bytes; it is required on systems without /dev/urandom. If `settings` lacks `peer`, `key` or `secret`, the
+--- value is taken from the random bytes.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     -- Random bytes for `peer`, `key` and `secret`, which must not be guessable.
@@ -59,7 +60,7 @@ function Driver.new(options)
         events = {},
         unissued = {},
         latest = 0,
-        -- Whether this peer requests a pause, and the other peers that request one.
+        -- `pauses`: whether this peer requests a pause. `pausing`: the set of the other peers that request one.
         pauses = false,
         pausing = {},
         -- Whether the inputs of all ticks are final.
@@ -86,7 +87,7 @@ function Driver:pause(paused)
         error("`paused` is true or false, and not " .. tostring(paused), 2)
     end
     self.pauses = paused
-    -- A peer that joins passes its request when the state arrives.
+    -- A peer that is still joining passes its request when it has received the state.
     if self:status() ~= ls.MATCH_CONNECTING then
         ls.match_pause(self.match, self.pauses and 1 or 0)
     end
@@ -94,7 +95,8 @@ end
 
 --- Whether this peer or another player requests a pause.
 function Driver:is_paused()
-    -- Requests no longer count when all inputs are final: a player may have quit during a pause.
+    -- Once all inputs are final, requests for a pause no longer count. Otherwise a player who quits during a pause
+    -- would keep the other players from playing the last ticks.
     return not self.finished and (self.pauses and self:may_have_seat() or next(self.pausing) ~= nil)
 end
 
@@ -113,7 +115,8 @@ function Driver:close()
     end
 end
 
--- Checks a time before it is passed to the match, whose time never decreases.
+-- Checks a time before it is passed to the match. A time that is only a little earlier than before is not an error: the
+-- time of the match never decreases.
 function Driver:check(now)
     if self.match == 0 then
         error("the driver is closed", 3)
@@ -191,8 +194,8 @@ function Driver:run(now, read)
     return failure
 end
 
--- Plays the ticks that are due. Returns an error that concerns the inputs instead of raising it: no inputs were issued,
--- so the match can continue with the next inputs.
+-- Plays the ticks that are due. Returns errors of `read` and of wrong inputs instead of raising them: no inputs were
+-- issued, so the match can continue with the next inputs.
 function Driver:play(now, read)
     while not self:is_paused() and self:is_due(now) do
         local seats = self:seat_count()
@@ -249,8 +252,8 @@ end
 
 function Driver:keep(tick)
     self:forget(function(kept) return kept == tick end)
-    -- Copies the hash, because the game may return a reference to an item of an array, which does not keep the array
-    -- alive.
+    -- Copies the hash, because the game may return a reference to an item of an array. LuaJIT frees the array although
+    -- the reference exists.
     local hash = ffi.new("ls2d_hash[1]")
     hash[0] = self.game:hash()
     self.saves[tick] = { saved = self.game:save(), hash = hash }
@@ -275,7 +278,7 @@ function Driver:resume(tick, state)
     ls.match_pause(self.match, self.pauses and 1 or 0)
 end
 
---- The newest tick up to `tick` whose state is saved, or nil.
+--- The newest saved tick that is at most `tick`, or nil.
 function Driver:newest(tick)
     local newest
     for kept in pairs(self.saves) do

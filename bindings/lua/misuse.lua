@@ -28,7 +28,7 @@ assert(ls.set_gravity(world, 0, ls.fx(-10)) and ls.fx_add(ls.fx(1), 0) == ls.fx(
 ls.free(world)
 fails("a freed world", "status " .. ls.HANDLE, ls.world_step, world)
 assert(tonumber(ls.object_count()) == 0, "nothing is leaked")
--- Bytes that do not fit into memory are freed.
+-- If there is no memory for the string, `take_bytes` still frees the bytes object.
 local ffi = require("ffi")
 ls.bytes_new("abc", 3, out)
 local new = ffi.new

@@ -19,12 +19,14 @@ export interface Vec2 {
     x: Fx;
     y: Fx;
 }
-/** Bytes in a buffer of their own, which nothing else uses: from TypeScript 5.7 on, a `Uint8Array<ArrayBuffer>`. */
+/** Bytes that do not share their buffer with other data. From TypeScript 5.7 on, the type is
+ * `Uint8Array<ArrayBuffer>`. */
 export type Bytes = ReturnType<Uint8Array["slice"]>;
 declare const handleBrand: unique symbol;
-/** Handle of a body. It is valid until the body is despawned, or until a state from before its spawn is restored. After
- * such a rollback, another body may get the same handle, so a table of sprites should also compare `userData`. The
- * first bodies have the handles 0, 1, 2 and so on. Convert a plain number, such as one of `poses()`, by `as BodyId`. */
+/** Handle of a body. It is valid until the body is despawned, or until a rollback to a state from before the spawn of
+ * the body. After such a rollback, another body may get the same handle, so a table of sprites should also compare
+ * `userData`. The first bodies have the handles 0, 1, 2 and so on. Convert a plain number, such as one of `poses()`, by
+ * `as BodyId`. */
 export type BodyId = number & { readonly [handleBrand]: "body" };
 /** Handle of a shape. */
 export type ShapeId = number & { readonly [handleBrand]: "shape" };
@@ -35,7 +37,7 @@ export type Rotation = Angle | 0;
 
 /** Options of `init`. */
 export interface InitOptions {
-    /** Whether to load the module with SIMD: by default, if the machine has SIMD. */
+    /** Whether to load the module with SIMD. By default, it is loaded if the machine supports SIMD. */
     simd?: boolean | undefined;
     /** A module that replaces the inlined one: a `WebAssembly.Module`, a `Response`, an `ArrayBuffer` or a view. */
     wasm?: object | undefined;
@@ -84,14 +86,15 @@ export class Fx {
     floor(): number;
     /** A float for drawing. It must not enter the simulation. */
     toNumber(): number;
-    /** Decimal text with up to 10 decimals. `fx` reads it as the same number. */
+    /** Decimal text with up to 10 decimals, from which `fx` makes the same number again. */
     toString(): string;
     toJSON(): string;
 }
 /** Makes a fixed-point number: `fx("1.25")`. Numbers out of range are errors. */
 export function fx(value: Num): Fx;
 
-/** A rotation in units of 2^-32 turn, counter-clockwise. Immutable. Sums drop whole turns. */
+/** A rotation in units of 2^-32 turn, counter-clockwise. Immutable. Sums and differences wrap around at a whole
+ * turn. */
 export class Angle {
     #private;
     constructor(bits: number);
@@ -100,7 +103,7 @@ export class Angle {
     add(other: Rotation): Angle;
     sub(other: Rotation): Angle;
     neg(): Angle;
-    /** Degrees above -180 and up to 180: exact. */
+    /** Degrees, above -180 and up to 180, without rounding. */
     toDegrees(): Fx;
     /** Radians above -pi and up to pi, rounded to nearest. */
     toRadians(): Fx;
@@ -148,11 +151,12 @@ export class Random {
     range(low: Num, high: Num): Fx;
 }
 
-/** Rule that combines the values of two shapes, in this order: `(a + b) / 2`, `sqrt(a b)`, the smaller value, `a b`,
- * the larger value. If the shapes have different rules, the rule that comes later in this order applies. */
+/** Rule that combines the values `a` and `b` of two shapes. `average` is `(a + b) / 2`, `geometricMean` is `sqrt(a b)`,
+ * `minimum` the smaller value, `product` is `a b`, `maximum` the larger value. If the shapes have different rules, the
+ * one that comes later in this list applies. */
 export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
-/** Effect of a sensor, the area, on dynamic bodies. The effect is in proportion to the part of each shape that is in
- * the area. Vectors are along the axes of the area's body. Effects are 0 by default. */
+/** Effects of an area, a sensor that acts on dynamic bodies. The effects on a body are in proportion to the part of its
+ * shapes that is in the area. Vectors are along the axes of the area's body. Effects are 0 by default. */
 export interface AreaOptions {
     /** Acceleration in m/s² besides gravity, within ±10 000 on each axis. */
     acceleration?: Vec;
@@ -168,8 +172,9 @@ export interface AreaOptions {
     angularDrag?: Num;
     /** Density of the medium in kg/m², for buoyancy, 0 to 2^20. */
     density?: Num;
-    /** Acceleration in m/s² towards the centre (±10 000), at the distance `radius` in metres (0.01 to 2^20). `falloff`
-     * applies beyond `radius`: `constant` by default. Nearer to the centre the acceleration decreases linearly to 0. */
+    /** Acceleration in m/s² towards the centre (±10 000), at the distance `radius` in metres (0.01 to 2^20). Nearer to
+     * the centre, the acceleration decreases linearly to 0. Farther away it is constant, or decreases with the distance
+     * or its square (`falloff`: `constant` by default). */
     attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
 }
 /** Properties of a shape. */
@@ -207,10 +212,11 @@ export interface ShapeOptions {
     sensor?: boolean;
     /** Makes the shape a sensor that acts on bodies. Segments and chains cannot be areas. */
     area?: AreaOptions;
-    /** Whether contacts are in `contactBegin` and `contactEnd`: true by default. It suffices that one of the two shapes
-     * has this option. */
+    /** Whether contacts of the shape are in `contactBegin` and `contactEnd`: true by default. A contact is reported if
+     * at least one of its two shapes has this option. */
     contactEvents?: boolean;
-    /** Whether hits are in `hits`: false by default. It suffices that one of the two shapes has this option. */
+    /** Whether hits of the shape are in `hits`: false by default. A hit is reported if at least one of its two shapes
+     * has this option. */
     hitEvents?: boolean;
     /** Whether sensors detect the shape: true by default. */
     sensorEvents?: boolean;
@@ -247,7 +253,7 @@ export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
 /** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes. `{
- * ...massOf(shapes), mass: 80 }` is 80 kg with the distribution of the shapes. */
+ * ...massOf(shapes), mass: 80 }` is a mass of 80 kg that is distributed like that of the shapes. */
 export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; gyration: Fx };
 
 /** `kinematic` bodies move at their velocity, which forces and contacts do not change. `dynamic` bodies are moved by
@@ -305,7 +311,7 @@ export interface BodyOptions extends BodySettings {
     asleep?: boolean;
     /** A number of 64 bits that the game may choose freely: 0 by default. */
     userData?: bigint | number;
-    /** Name in reports: at most 16 letters, digits, `-` and `_`. */
+    /** Name in reports: at most 16 ASCII letters, digits, `-` and `_`. */
     name?: string;
     /** Shapes of the body, at most 4096; each link of a chain counts. None by default. */
     shapes?: readonly (ShapeDef | ChainDef)[];
@@ -320,8 +326,8 @@ export interface Spring {
     /** Rest position in rad or m: 0 by default. */
     target?: Num;
 }
-/** A joint, with an anchor and an angle on each body. An option that the type of the joint does not have throws
- * `VALUE`; a value out of range throws `JOINT`. */
+/** Definition of a joint. On each body, it has an anchor, and a frame with an angle. An option that the type of the
+ * joint does not have throws `VALUE`; a value out of range throws `JOINT`. */
 export interface JointOptions {
     /** - `revolute`: a hinge.
      * - `prismatic`: B slides along the x axis of the joint's frame on A, and does not turn.
@@ -341,7 +347,7 @@ export interface JointOptions {
      * `anchorA`, `anchorB`, `angleA` and `angleB`, so do not pass these four options as well. */
     anchor?: Vec;
     /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default;
-     * [0, 1] for a car. */
+     * [0, 1] for the wheels of a car. */
     axis?: Vec;
     /** Anchor in the frame of body A, in metres, within ±128 on each axis, or ±2^30 on a fixed body. The origin by
      * default. */
@@ -390,8 +396,8 @@ export interface JointOptions {
     radius?: Num;
     /** Positions of the wheels on the sides of A and B, in the world, in metres (pulley, required). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). Required without
-     * `anchor`. With `anchor`, the length follows from the poses. */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). Required, unless `anchor`
+     * is given: then the length follows from the poses of the bodies. */
     length?: Num;
     /** The length on A's side plus `ratio` times the length on B's side is at most `length` (pulley). 0.25 to 4: 1 by
      * default. */
@@ -475,7 +481,7 @@ export interface ConfigOptions {
     /** Largest number of joints, at most 2^20, the default. */
     jointLimit?: number;
     /** Largest number of pairs of shapes with overlapping fat AABBs in a tick, at most 2^20: 2^18 by default. A tick
-     * with more pairs leaves some of them out, and counts as a fault (`faults`). */
+     * with more pairs ignores the pairs of the shapes in the largest slots, and counts as a fault (`World.faults`). */
     pairLimit?: number;
     /** Whether bodies at rest fall asleep: true by default. */
     sleeping?: boolean;
@@ -544,8 +550,8 @@ declare class Edits extends Handle {
      * for other bodies, and `SPEED` if the body cannot reach the pose in one tick at the world's `speedMax`. Use
      * `setTransform` for such a distance. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Replaces the settings of a body, and wakes it. Omitted settings have their defaults. Other properties that
-     * `World.body` returns throw `VALUE`. */
+    /** Replaces the settings of a body, and wakes it. Omitted settings have their defaults. Throws `VALUE` for other
+     * properties, such as the remaining ones that `World.body` returns. */
     setBody(body: BodyId, settings: BodySettings): void;
     /** Changes the type of a body. A body that becomes fixed stops. */
     setType(body: BodyId, type: BodyType): void;
@@ -560,9 +566,10 @@ declare class Edits extends Handle {
     /** Takes a body out of the simulation: it keeps its pose and velocity, collides with nothing, and queries do not
      * find it. */
     disable(body: BodyId): void;
-    /** Wakes a body, with dynamic bodies that contacts and joints connect it to. */
+    /** Wakes a body, together with the dynamic bodies that are connected to it by contacts and joints. */
     wake(body: BodyId): void;
-    /** Puts a dynamic body to sleep, with dynamic bodies that contacts and joints connect it to. */
+    /** Puts a dynamic body to sleep, together with the dynamic bodies that are connected to it by contacts and
+     * joints. */
     sleep(body: BodyId): void;
     /** Sets the gravity in m/s², and wakes all bodies. */
     setGravity(gravity: Vec): void;
@@ -589,7 +596,8 @@ export class Commands extends Edits {
     readonly length: number;
     clear(): void;
     toBytes(): Bytes;
-    /** Replaces the contents of the list by those of encoded bytes, which may come from any source. */
+    /** Replaces the contents of the list by the commands that `toBytes` has encoded. The bytes may come from an
+     * untrusted source. */
     fromBytes(bytes: Uint8Array): this;
 }
 
@@ -720,14 +728,15 @@ export class World extends Edits {
     /** `smallest` is the size in metres of the smallest boxes whose stacks have to be stable. Small sizes add
      * sub-steps, stiffen contacts and reduce `speculativeDistance`. */
     constructor(options?: ConfigOptions & { smallest?: Num });
-    /** Makes a world from bytes, which may come from any source. Wrong bytes throw `SNAPSHOT`. */
+    /** Makes a world from the bytes of `toBytes`. The bytes may come from an untrusted source. Wrong bytes throw
+     * `SNAPSHOT`. */
     static fromBytes(bytes: Uint8Array): World;
     toBytes(): Bytes;
     clone(): World;
     /** Adds a body, and returns its handle. */
     spawn(options: BodyOptions): BodyId;
-    /** Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
-     * A recording stores the definition only once. */
+    /** Adds a body at each pose, all with the definition `options`. If the world refuses one of the bodies, it adds
+     * none of them. A recording stores the definition only once. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: readonly BodyPose[]): BodyId[];
     /** Adds a shape to a body, and returns its handle. */
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
@@ -747,10 +756,10 @@ export class World extends Edits {
     /** Hash of one section of the state. `section` is 0 (settings, tick and fault count), 1 (bodies), 2 (shapes), 3
      * (joints), 4 (contacts), 5 (islands), or 6 (random number generator). */
     digest(section: number): string;
-    /** Number of ticks. `restore` and `fromBytes` set the saved number. */
+    /** Number of ticks since the world was made. `restore` and `fromBytes` set it to the number in the saved state. */
     readonly tick: number;
-    /** Number of results that the solver has clamped to their range, plus one for every tick with more pairs than
-     * `pairLimit`. Limiting a body to `speedMax` does not count. */
+    /** Number of faults: results of the solver that were clamped to the range of their number format, and ticks with
+     * more pairs than `pairLimit`. Limiting a body to `speedMax` does not count. */
     readonly faults: number;
     /** `pairs` counts pairs of shapes with overlapping fat AABBs. */
     counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
@@ -800,7 +809,7 @@ export class World extends Edits {
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
     /** For drawing, five floats for each enabled body: handle, x and y in metres, angle in radians, and 1 if the body
      * is awake, otherwise 0. If `target` is long enough, the floats are written to `target`, and the result is a view
-     * of them. */
+     * of the written part. */
     poses(target?: ReturnType<Float64Array["slice"]>): ReturnType<Float64Array["slice"]>;
     poses(target: Float64Array): Float64Array;
     /** The events of the last tick: after `step(120)`, those of the 120th tick. */
@@ -817,8 +826,8 @@ export class World extends Edits {
     overlapBox(lower: Vec, upper: Vec, filter?: Filter): ShapeId[];
     /** Shapes that contain a point, in slot order. */
     overlapPoint(point: Vec, filter?: Filter): ShapeId[];
-    /** The shape nearest to a point, within a distance in metres. `distance` is negative inside the shape, `point` is
-     * on its surface, and `normal` is the unit vector from the given point to the shape. */
+    /** The shape nearest to a point, if its distance is at most `within` metres. `distance` is negative inside the
+     * shape, `point` is on its surface, and `normal` is the unit vector from the given point to the shape. */
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
@@ -828,9 +837,9 @@ export interface MoverOptions {
     shape: ShapeDef;
     /** Steepest slope that counts as ground, measured from the horizontal; 45 degrees by default. */
     slopeMax?: Rotation;
-    /** Height in metres of steps that the character climbs without a jump; 0 by default. */
+    /** Height in metres of steps that the character climbs without a jump, 0 to 100; 0 by default. */
     stepHeight?: Num;
-    /** Largest descent of the ground within a tick that the character follows, in metres; 0.1 by default. */
+    /** Largest descent of the ground within a tick that the character follows, in metres, 0 to 100; 0.1 by default. */
     snapDistance?: Num;
 }
 /** A surface that a character has met. */
@@ -880,7 +889,7 @@ export interface Moved {
         /** Shapes solid from one side that the character overlaps and passes through until it has left them. */
         passing: ShapeId[];
     };
-    /** The surfaces that the character has met, in order. */
+    /** The surfaces, in the order in which the character has met them. */
     met: MoverPlane[];
 }
 /** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and is carried by moving
@@ -893,8 +902,8 @@ export function moveCharacter(world: World, mover: MoverOptions, state: MoverSta
 export function encodeMoverState(state: MoverState): Bytes;
 export function decodeMoverState(bytes: Uint8Array): Moved["state"];
 
-/** Bounds on the cost of a replay. The defaults allow a day of play. With them, a malicious file can take hours to
- * verify: a server should set narrower limits. */
+/** Upper limits on the size of a replay and on the cost of playing it. The defaults allow a day of play. With the
+ * defaults, a malicious file can take hours to verify: a server should set narrower limits. */
 export interface Limits {
     /** Bytes of the file: 64 MiB by default. */
     fileBytes?: number;
@@ -902,7 +911,7 @@ export interface Limits {
     setupBytes?: number;
     /** Number of players: 64 by default. */
     players?: number;
-    /** Bytes of a block, which has the inputs between two checkpoints: 16 MiB by default. */
+    /** Bytes of a block, the part of the file with the inputs between two checkpoints: 16 MiB by default. */
     blockBytes?: number;
     /** Ticks between checkpoints: 3600 by default. */
     blockTicks?: number;
@@ -928,9 +937,9 @@ export interface Verdict {
     /** Ticks played, for `match`, `claim_mismatch` and `incomplete`; tick of the first checkpoint that differs, for
      * `diverged`; otherwise 0. */
     ticks: number;
-    /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay`, the
-     * hash passed to `verdict`. For a `Recording`, the hash also covers the number of refused commands, so that it
-     * differs from `World.hash()`. */
+    /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay`, this
+     * is the hash that was passed to `verdict`. For the file of a `Recording`, it differs from `World.hash()`, because
+     * it also covers the number of refused commands. */
     hash: string;
     /** The verdict in words. */
     text: string;
@@ -943,7 +952,7 @@ export class Timeline extends Handle {
     readonly ticks: number;
     /** The current tick, 0 at first. */
     readonly tick: number;
-    /** Goes to a tick, and compares states on the way with the checkpoints of the file. */
+    /** Goes to a tick. Compares the states of the ticks that it plays with the checkpoints of the file. */
     seek(tick: number): void;
     /** Returns false at the end. */
     step(): boolean;
@@ -953,7 +962,7 @@ export class Timeline extends Handle {
     world(): World;
 }
 
-/** Verifies a replay of a world, which may come from any source. */
+/** Verifies a replay of a world. The replay may come from an untrusted source. */
 export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 
 /** A world whose inputs are lists of commands, recorded while it runs. */
@@ -1000,10 +1009,11 @@ export class Recorder extends Handle {
         interval?: number;
     });
     /** Records the inputs of all players, and a bit for each absent player, whose input has to be zeros.
-     * `Match.finalInputs` returns these two values. `record` returns whether `checkpoint` has to follow. */
+     * `Match.finalInputs` returns these two values. `record` returns whether the caller then has to call
+     * `checkpoint`. */
     record(inputs: Uint8Array, absent?: bigint): boolean;
-    /** Adds a result such as a score, with a name of 1 to 64 bytes. A replay has at most 256 results, with different
-     * names. The results can be read without playing the replay. */
+    /** Adds a result such as a score, with a name of 1 to 64 bytes. A replay has at most 256 results, and their names
+     * must differ. The results can be read without playing the replay. */
     claim(name: string, number: number | bigint): void;
     /** Passes the hash of the state after the last recorded tick. */
     checkpoint(hash: string): void;
@@ -1025,7 +1035,7 @@ export class Replay extends Handle {
     readonly ticks: number;
     /** Data from which the game makes its first state. */
     readonly setup: Bytes;
-    /** Results in the file, verified only if the verdict is `match`. */
+    /** Results in the file. They are verified only if the verdict is `match`. */
     readonly claims: Map<string, bigint>;
     /** The inputs of the next tick; undefined at the end. */
     next(): TickInputs | undefined;
@@ -1036,11 +1046,11 @@ export class Replay extends Handle {
     claim(name: string, number: number | bigint): void;
     /** The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
     verdict(hash: string): Verdict;
-    /** Starts seeking to a tick; `ReplayDriver` fulfils the requests. At the first call the game has to be in its first
-     * state. */
+    /** Starts seeking to a tick. Then fulfil the requests of `nextRequest`, or let a `ReplayDriver` do both. At the
+     * first call the game has to be in its first state. */
     seek(tick: number): void;
-    /** The next request: `save`, `load`, `advance`, or `checksum`, which `check` answers. Undefined when the tick is
-     * reached. Throws `RECORD` if the game has diverged from the file. */
+    /** The next request of `seek`: `save`, `load`, `advance`, or `checksum`, which `check` answers. Undefined when the
+     * tick is reached. Throws `RECORD` if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
     /** Sets the interval in ticks at which seeking saves the state: 60 by default, or a 256th of the replay if that is
      * more. */
@@ -1058,18 +1068,19 @@ export interface ReplayGame<Saved = unknown> {
     /** 32 hexadecimal digits. */
     hash(): string;
 }
-/** Goes to any tick of a replay with a game. */
+/** Plays a replay with a game, and goes to any of its ticks. */
 export class ReplayDriver<Saved = unknown> {
     #private;
-    /** The game has to be in the state before the first tick. The replay must not have been read, and only this driver
-     * may read it. */
+    /** The game has to be in the state before the first tick. Nothing may have been read from the replay before. From
+     * now on, do not call `next`, `seek` or `nextRequest` of the replay yourself. */
     constructor(replay: Replay, game: ReplayGame<Saved>);
     /** The number of ticks that led to the current state. */
     readonly tick: number;
-    /** Goes to a tick, from a saved state. Throws `RECORD` if the game diverges from the file. The driver then stays at
-     * the checkpoint that differs, and only earlier ticks can be reached. An error of the game is thrown unchanged.
-     * After such an error, or if the replay was read without this driver, `seek` reaches only ticks to which a saved
-     * state leads, and throws `VALUE` for other ticks. */
+    /** Goes to a tick: restores a saved state if this saves time, and simulates the ticks after it. Throws `RECORD` if
+     * the game diverges from the file. The driver then stays at the checkpoint that differs, and only earlier ticks can
+     * be reached. An error of the game is thrown unchanged. After such an error, or if the replay was read without this
+     * driver, `seek` can only continue from a saved state, and throws `VALUE` if it would have to continue from the
+     * current state. */
     seek(tick: number): void;
     /** Goes forward by a tick. The game simulates this tick. Returns false at the end. */
     step(): boolean;
@@ -1095,7 +1106,7 @@ export interface MatchOptions {
     inputBytes?: number;
     /** Ticks a second, 1 to 1000: 60 by default. */
     tickRate?: number;
-    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Peers may have different
+    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, means lockstep. Peers may have different
      * values. */
     guess?: number;
     /** Smallest delay of your own inputs in ticks: 0 by default. The delay follows the latency. */
@@ -1107,15 +1118,15 @@ export interface MatchOptions {
      * `checkInterval`. */
     saveInterval?: number;
     /** Interval in ticks at which states are compared: a multiple of `saveInterval`. The default is that of a native
-     * `Peer`: the largest multiple of `saveInterval` up to 10, or `saveInterval` if it is more than 10. Without both
-     * options, it is 6 in lockstep. */
+     * `Peer`: the largest multiple of `saveInterval` up to 10, or `saveInterval` if it is more than 10. If neither
+     * option is given, it is 6 in lockstep. */
     checkInterval?: number;
     /** Ticks that may be played beyond the last final tick, at least 16: 128 by default. */
     history?: number;
     /** Minimum number of final ticks whose inputs are kept for peers that return: 36 000 by default. */
     logTicks?: number;
-    /** Ticks between the agreement that a peer joins and its first tick, in addition to three round trips: 8 by
-     * default. */
+    /** When a peer joins, its first tick lies three round trips and this number of ticks after the agreement on its
+     * seat: 8 by default. */
     seatLead?: number;
     /** A peer may get a seat if it lags by at most this many ticks: 40 by default. */
     seatWithin?: number;
@@ -1144,8 +1155,8 @@ export interface MatchOptions {
  * - `watching`: follows the match without a seat.
  * - `waiting`: has a seat, or is a dedicated server, in a match that has not begun.
  * - `playing`: has a seat, or is a dedicated server, in a match that has begun.
- * - `paused`: no messages of a majority of the peers arrive, directly or through others. Possible for a moment after
- *   joining.
+ * - `paused`: no messages of a majority of the peers arrive, directly or through others. A peer may have this status
+ *   for a moment after it has joined.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
  * - `kicked`: removed by a vote.
  * - `leaving`: announces its departure.
@@ -1158,7 +1169,8 @@ export type MatchStatus =
 /** An event of a match. Other fields than those named here have no meaning.
  *
  * - `status`: the new `status`.
- * - `view`: voters, seats, start or end of the match have changed; `value` counts the changes.
+ * - `view`: voters, seats, start or end of the match have changed. `value` is the number of the new view, which each
+ *   change increases by one.
  * - `seated`: from `tick` on, `peer` has `seat`. `unseated`: from `tick` on, `peer` no longer has `seat`.
  * - `waiting`: play stalls, because inputs of `peer` are missing. `value` is 1 if messages of this peer still arrive,
  *   directly or through other peers; otherwise 0.
@@ -1192,7 +1204,7 @@ export interface MatchEvent {
     reason?: "offer" | "full" | "taken" | "notReady";
     state?: Bytes;
 }
-/** A request to the game. Fulfil requests in order, before you call `advance` again:
+/** A request to the game. Fulfil the requests in the order of `nextRequest`, before you call `advance` again:
  *
  * - `save`: keep a copy of the state before `tick`.
  * - `load`: restore the copy of the state before `tick`.
@@ -1257,8 +1269,8 @@ export class Match extends Handle {
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-     * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
-     * withdrawn, so base it on the state of a confirmed tick (`ticks().confirmed`). */
+     * majority has decided on the end, other peers can get seats. One peer can request the end for all, and the request
+     * cannot be withdrawn, so base it on the state of a confirmed tick (`ticks().confirmed`). */
     endAt(ticks: number): void;
     /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on: during a
      * pause, the program of each peer calls `update` and does not call `advance`. With a driver, use
@@ -1274,8 +1286,8 @@ export class Match extends Handle {
 /** A game for `MatchDriver`. `encode` and `decode` are for peers that join. */
 export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
-    /** Replaces the state by an encoded state, which may come from any source. Decode the bytes before you free the old
-     * state, because the old state has to stay if the bytes are not valid. */
+    /** Replaces the state by an encoded state, which may come from an untrusted source. Decode the bytes before you
+     * free the old state: if the bytes are not valid, throw an error and keep the old state. */
     decode(bytes: Bytes): void;
 }
 /** Plays a game in a match: saves, restores and advances it as the match requests. */
@@ -1327,13 +1339,13 @@ export function nativeOffer(options: {
     seats: number;
     /** 1 by default. */
     inputBytes?: number;
-    /** Milliseconds, as in `MatchOptions`. */
+    /** Milliseconds, as in `MatchOptions`: 2000 by default. */
     patience?: number;
 }): Bytes;
 /** The state of a native game whose `Save` is the `Snapshot` of its world, for `MatchGame.encode`. */
 export function encodeNativeState(world: World): Bytes;
-/** The world from a state of `encodeNativeState` or of a native game, for `MatchGame.decode`. The bytes may come from
- * any source. */
+/** Decodes the world from a state of `encodeNativeState` or of a native game, for `MatchGame.decode`. The bytes may
+ * come from an untrusted source. */
 export function decodeNativeState(bytes: Uint8Array): World;
 
 /** A member of a room of a relay (`crates/relay`), which carries packets over a WebSocket. It reconnects when the
@@ -1342,15 +1354,16 @@ export class Relay {
     #private;
     private constructor();
     /** Enters a room, and creates it if necessary. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
-     * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. Node before 22
-     * needs the option `WebSocket`. Throws `RELAY` if the relay refuses the connection or does not answer within ten
-     * seconds, or if the page cannot open the URL, such as `ws://` in a page loaded over https. */
+     * digits and `-`. `secret` has 16 bytes, random by default: a member that enters again with the same `secret` gets
+     * the same address. Node before 22 needs the option `WebSocket`. Throws `RELAY` if the relay refuses the connection
+     * or does not answer within ten seconds, or if the page cannot open the URL, such as `ws://` in a page loaded over
+     * https. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array | undefined; WebSocket?: unknown }): Promise<Relay>;
     /** Address of this member. */
     readonly own: Bytes;
     /** Addresses of the other members, in the order in which they entered. */
     readonly others: Bytes[];
-    /** Whether there is a connection. `Relay` opens a lost connection again, unless `isClosed`. */
+    /** Whether there is a connection. `Relay` opens a lost connection again, unless `isClosed` is true. */
     readonly isOpen: boolean;
     /** Whether the connection has ended for ever: after `close`, or because the same `secret` has entered the room
      * again, for example in a duplicate of the tab. */
@@ -1359,8 +1372,8 @@ export class Relay {
     onPacket: (from: Bytes, packet: Bytes) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers: (others: Bytes[]) => void;
-    /** Sends a packet to a member. It is dropped if there is no connection, if too many bytes wait to be sent, or if
-     * `to` does not have the 8 bytes of an address. */
+    /** Sends a packet to a member. The packet is dropped if there is no connection, if more than 512 KiB wait to be
+     * sent, or if `to` does not have the 8 bytes of an address. */
     send(to: Uint8Array, packet: Uint8Array): void;
     close(): void;
 }

@@ -1,6 +1,7 @@
 // Opens built pages in a headless Chromium: node bindings/npm/test-bundlers.mjs RESULT FOLDER...
 //
-// `globalThis.result` of each page has to contain RESULT from the page and from its worker.
+// In each page, `globalThis.result` has to be { page: RESULT, worker: RESULT }: the page and its worker compute it
+// separately.
 import assert from "node:assert/strict";
 import { basename, resolve } from "node:path";
 import { pathToFileURL } from "node:url";

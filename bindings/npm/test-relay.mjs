@@ -1,9 +1,10 @@
 // A match through the relay: node bindings/npm/test-relay.mjs RELAY PUSH LOCKSTEP2D
 //
 // The arguments are paths of `lockstep2d-relay`, of its example `push`, and of the command `lockstep2d`. Two peers in
-// Node and a native one play 3000 ticks. The first peer in Node is paused for five seconds, and the second is restarted
-// with its key. All three end with the same hash. The peers that play from the first tick write equal replays, which
-// `lockstep2d verify` accepts. Meanwhile, a member of another room sends nothing and keeps its connection.
+// Node and a native one play 3000 ticks. The first peer in Node stops its updates for five seconds. The second quits,
+// and is started again with the same key. All three peers end with the same hash. The peers that play from the first
+// tick write equal replays, which `lockstep2d verify` accepts. Meanwhile, a member of another room sends nothing and
+// keeps its connection.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -39,7 +40,8 @@ const FOLDER = fileURLToPath(new URL("tests/relay/", import.meta.url));
 const node = (name, ...args) => start(process.execPath, ...flags, join(FOLDER, `${name}.mjs`), ...args);
 const peer = (...args) => node("peer", ...args);
 
-/** The hash of a `Sandbox` (Rust), which also covers the number of refused commands, here 0. */
+/** Computes the hash of a `Sandbox` (Rust) from the hash of its world. It also covers the number of refused commands,
+ * here 0. */
 function sandboxHash(world) {
     const bytes = (digits) => Buffer.from(digits, "hex").reverse();
     return L.hashBytes(Buffer.concat([bytes(world), bytes(L.hashBytes(new Uint8Array(8)))]));

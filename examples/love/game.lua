@@ -47,7 +47,7 @@ function Game.new()
     return self
 end
 
---- Each input is one byte: left, right, jump.
+--- Plays a tick. `inputs` has one byte for each seat, with the bits `LEFT`, `RIGHT` and `JUMP`.
 function Game:step(inputs)
     for seat, player in ipairs(self.players) do
         local input = inputs:byte(seat)
@@ -82,7 +82,7 @@ function Game:drop(saved)
 end
 
 function Game:hash()
-    -- `ls.out("hash")[0]` would be a reference into an array that LuaJIT may free after this function.
+    -- `ls.out("hash")[0]` would be a reference into an array that LuaJIT may free when this function has returned.
     local hash = ffi.new("ls2d_hash")
     ls.world_hash(self.world, hash)
     return hash

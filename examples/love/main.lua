@@ -3,9 +3,9 @@
 ---     love examples/love --host 4000
 ---     love examples/love --join 127.0.0.1:4000
 ---
---- The keys are the arrows, or A, D and W; the space bar jumps, too. `--guess N` plays up to N ticks ahead of the
---- inputs of the other player (6 by default; 0 is lockstep). For tests: `--ticks N` on the host, `--random SEED`
---- presses random keys, `--screenshot NAME` saves a picture at the end.
+--- The keys are the arrows, or A, D and W; the space bar jumps, too. With `--guess N`, a player may be up to N ticks
+--- ahead of the inputs of the other player (6 by default; 0 is lockstep). For tests: `--ticks N` on the host ends the
+--- match after N ticks, `--random SEED` presses random keys, `--screenshot NAME` saves a picture at the end.
 local ffi = require("ffi")
 local socket = require("socket")
 local ls = require("lockstep2d")
@@ -14,7 +14,7 @@ local Game = require("game")
 
 -- Pixels per metre.
 local SCALE = 40
--- Capacity of `rows`, in bodies.
+-- Maximum number of bodies in `rows`.
 local ROWS = 64
 
 local game, driver, udp, options, final_hash
@@ -88,7 +88,7 @@ function love.update()
     end
     local status = driver:status()
     local _, final = driver:ticks()
-    -- Some ticks with final inputs may not be played yet.
+    -- Ticks whose inputs are final may still have to be played, so `driver.tick` is compared as well.
     if status == ls.MATCH_FINISHED and driver.tick == final and not final_hash then
         final_hash = ls.hex(game:hash())
         print(("%d ticks: %s"):format(driver.tick, final_hash))
@@ -137,14 +137,14 @@ end
 
 local leaving = false
 
--- Closing the window leaves the match: the window stays open until the others have the inputs of this player. Closing
--- it again ends the program at once.
+-- The first attempt to close the window leaves the match: the window stays open until the others have the inputs of
+-- this player. The second attempt ends the program at once.
 function love.quit()
     if leaving then
         return false
     end
     local status = driver:status()
-    -- A game that still requests to join has no match to leave.
+    -- While this player is still connecting, there is no match to leave.
     if status ~= ls.MATCH_CLOSED and status ~= ls.MATCH_CONNECTING then
         ls.match_leave(driver.match)
         leaving = true

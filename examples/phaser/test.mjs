@@ -1,8 +1,8 @@
 // Plays the example in headless Chromium: node examples/phaser/test.mjs FOLDER RELAY SCREENSHOT_DIRECTORY
 //
 // FOLDER is a copy of this folder with `node_modules` and `dist`. The first page plays a match of two players at one
-// keyboard. Its replay has to lead to the same hash in a new page and in Node. Then two pages of Vite's development
-// server play a match through the relay, and end with the same hash.
+// keyboard. Its replay must lead to the same hash in a new page and in Node. Then two pages from Vite's development
+// server play a match through the relay, and must end with the same hash.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";
@@ -25,7 +25,7 @@ async function open(url) {
     return page;
 }
 
-// Phaser reads `keyCode`.
+// Sends a key event. Phaser reads `keyCode`, which Chromium sets from `windowsVirtualKeyCode`.
 const key = (page, type, name) =>
     page.send("Input.dispatchKeyEvent", { type, key: name, windowsVirtualKeyCode: KEY_CODES[name] });
 
@@ -41,7 +41,7 @@ const STATE = `(() => {
 const playing = (page, ticks) =>
     page.until(STATE, ({ status, tick }) => status === "playing" && tick >= ticks, `it plays ${ticks} ticks`);
 
-// Presses keys for some hundred ticks.
+// Presses and releases the keys of both players in turn until the game has reached the tick `ticks`.
 async function rollAndJump(page, ticks) {
     const names = ["d", "ArrowLeft", "w", "ArrowUp", "s", "a", "ArrowRight", "ArrowDown"];
     for (let turn = 0; (await page.evaluate(STATE)).tick < ticks; turn++) {
@@ -54,10 +54,10 @@ async function rollAndJump(page, ticks) {
     }
 }
 
-// Ends the recording.
+// Returns the replay of a page. The recording of the page then ends.
 const replayOf = async (page) => Uint8Array.from(await page.evaluate("[...example.session().recording.finish()]"));
 
-// The page and Node play the replay. The verdict compares the last state with the hash of the live game.
+// Verifies a replay in the page and in Node. The verdict compares the last state with the hash of the live game.
 async function verified(page, replay) {
     const here = await page.evaluate(`example.verify(Uint8Array.of(${replay}))`);
     assert.equal(here.verdict, "match", here.text);
@@ -65,7 +65,7 @@ async function verified(page, replay) {
     return here;
 }
 
-/** The bits that each player has pressed in a replay. */
+/** For each player, the bits of all keys that the player has pressed in a replay. */
 function pressed(replay) {
     const [inputs, bits] = [new Replay(replay), [0, 0]];
     for (let tick = inputs.next(); tick !== undefined; tick = inputs.next()) {
@@ -74,7 +74,7 @@ function pressed(replay) {
     return bits;
 }
 
-/** The hashes of a replay with other inputs. */
+/** Returns a forged replay: the hashes of `replay`, but other inputs. */
 function forged(replay) {
     const [inputs, game] = [new Replay(replay), new Game()];
     const recording = new Recording(game);

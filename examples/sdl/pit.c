@@ -100,7 +100,7 @@ static void build(ls2d_handle commands) {
     }
 }
 
-/* Adds the commands of a tick for held keys and a click. */
+/* Adds the commands of a tick: a force for held arrow keys, and an explosion for a click. */
 static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, const uint8_t *keys,
                  const SDL_Point *click) {
     const int x = keys[SDL_SCANCODE_RIGHT] - keys[SDL_SCANCODE_LEFT];
@@ -111,7 +111,7 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
         check(ls2d_apply_force(commands, player, LS2D_FX(25 * x), LS2D_FX(25 * y), info.position.x, info.position.y));
     }
     if (click != NULL) {
-        /* The position is a fraction of integers, so that the command is exact. */
+        /* The position is a fraction of two integers and involves no floats, so the command is the same everywhere. */
         const ls2d_fx at_x = LS2D_FX_RATIO(click->x - WIDTH / 2, PIXELS_PER_METRE);
         const ls2d_fx at_y = LS2D_FX_RATIO(HEIGHT - PIXELS_PER_METRE - click->y, PIXELS_PER_METRE);
         ls2d_explosion explosion;
@@ -124,7 +124,7 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
 
 /* ---- Drawing: floats, which never enter the world ---- */
 
-/* Writes the corners of a shape in metres from its centre. Returns their number; 0 for a shape without area. */
+/* Writes the corners of a shape, in metres relative to its centre. Returns their number, 0 for a shape without area. */
 static int outline(const ls2d_shape_def *shape, SDL_FPoint *corners) {
     const double pi = 3.14159265358979, radius = (double)shape->radius / METRE;
     int i, count = 0;
@@ -243,7 +243,7 @@ int main(int argc, char **argv) {
     size_t count;
     SDL_Window *window;
     SDL_Renderer *renderer;
-    /* A click waits for the next tick, because some iterations of the loop play no tick. */
+    /* Position of a click. It is kept until the next tick, because some iterations of the loop play no tick. */
     SDL_Point click;
     int i, is_click = 0, is_over = 0;
 
@@ -287,7 +287,7 @@ int main(int argc, char **argv) {
             }
         }
         if (ticks_max == UINT64_MAX) {
-            /* 60 ticks a second. If more than six ticks are due, as after a pause, the program skips them. */
+            /* Plays 60 ticks a second. If more than six ticks are due, for example after a pause, skips them. */
             const uint64_t due = SDL_GetTicks64() * 60 / 1000 - skipped;
             if (due > ticks + 6) {
                 skipped += due - ticks;

@@ -1,5 +1,5 @@
-//! The game of several examples: two players push one ball. The claim in its replays is the x coordinate of the ball,
-//! in whole metres.
+//! The game of several examples: two players push one ball. A replay claims the x coordinate of the ball at the end, in
+//! whole metres.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;

@@ -7,19 +7,19 @@ const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Members in different networks need a STUN server: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
 const CONFIG = {};
-// Most candidates of a member that wait for a description.
+// Maximum number of candidates of a member that are kept until its description arrives.
 const CANDIDATES_MAX = 64;
 const CHANNEL = { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 };
 
 const nameOf = (address) => address.join(".");
-// While the state of a connection is "disconnected", packets do not arrive, although the channel is still open.
+// If the state of the connection is "disconnected", packets do not arrive, although the channel is still open.
 const isUsable = ({ connection, channel }) => channel.readyState === "open" && connection.connectionState === "connected";
 const isSignal = (bytes) => bytes.length > SIGNAL.length && SIGNAL.every((byte, index) => bytes[index] === byte);
 
 export class Direct {
     #relay;
     #links = new Map();
-    // For each member, candidates that have arrived before a description.
+    // For each member, the candidates that have arrived before its description.
     #early = new Map();
     enabled = false;
     onPacket = () => {};
@@ -36,7 +36,7 @@ export class Direct {
         relay.onMembers = () => this.#connect();
     }
 
-    /** Number of members that are reached by a channel. */
+    /** Number of members to which packets are sent through a channel and not through the relay. */
     get count() {
         return [...this.#links.values()].filter(isUsable).length;
     }
@@ -61,8 +61,8 @@ export class Direct {
         this.#early.clear();
     }
 
-    // The member whose address comes first, as text, makes the offer. The other member requests the offer with a
-    // `wish`.
+    // In a pair of members, the one whose address is first in the order of texts makes the offer. The other one requests
+    // the offer with a `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
@@ -88,7 +88,7 @@ export class Direct {
         const connection = new RTCPeerConnection(CONFIG);
         const channel = connection.createDataChannel("match", CHANNEL);
         channel.binaryType = "arraybuffer";
-        // A text message is no packet: `new Uint8Array` would convert the text to a number, and use it as a length.
+        // Ignores text messages: `new Uint8Array` would convert the text to a number, and use it as a length.
         channel.onmessage = ({ data }) => data instanceof ArrayBuffer && this.onPacket(address, new Uint8Array(data));
         connection.onicecandidate = ({ candidate }) => candidate && this.#signal(address, { candidate });
         connection.onconnectionstatechange = () => ["failed", "closed"].includes(connection.connectionState) && this.#drop(address);
@@ -132,8 +132,8 @@ export class Direct {
         }
     }
 
-    // Adds a candidate to the connection that it belongs to, or keeps it until the connection has a description. If the
-    // connection refuses a candidate, for example one of an earlier connection, the connection continues.
+    // Adds a candidate to the connection with its sender, or keeps it until the connection has a description. If the
+    // connection refuses the candidate, for example because it belongs to an earlier connection, this error is ignored.
     async #reachable(from, candidate) {
         const connection = this.#links.get(nameOf(from))?.connection;
         if (connection?.remoteDescription) {

@@ -25,7 +25,7 @@ export class Game {
         this.players = [...this.world.bodies()].slice(1, 1 + SEATS);
     }
 
-    // The edits of a tick. Bits of an input: left, right, up.
+    // Applies the inputs of a tick to `edits`, a world or a list of commands. Bits of an input: 1 left, 2 right, 4 up.
     apply(inputs, edits) {
         this.players.forEach((player, seat) => {
             const input = inputs[seat];

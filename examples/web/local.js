@@ -12,7 +12,7 @@ addEventListener("keyup", ({ code }) => pressed.delete(code));
 addEventListener("blur", () => pressed.clear());
 const pad = (seat) => Object.entries(KEYS[seat]).reduce((bits, [code, bit]) => bits | (pressed.has(code) ? bit : 0), 0);
 
-// A network in memory, with loss and latency.
+// A network in memory. The page sets its latency in ms and its loss in percent.
 const network = {
     peers: [],
     send(from, to, packet) {
@@ -62,7 +62,7 @@ setInterval(() => {
 }, 4);
 const frame = () => {
     peers.forEach((peer) => peer.draw());
-    // A recording that begins late in the match misses inputs.
+    // If a recording begins late in the match, it lacks the first inputs and cannot be saved.
     element("save").disabled = recording.broken;
     requestAnimationFrame(frame);
 };

@@ -31,7 +31,7 @@ function frame() {
     const { status, tick, final, seats, desyncs, direct } = player.state();
     player.guess = element("rollback").checked ? 8 : 0;
     draw(element("canvas"), player.game, 36);
-    // A player who has joined late has no inputs of the first ticks, and therefore no replay.
+    // A player who has joined late lacks the inputs of the first ticks, and therefore cannot save a replay.
     element("save").disabled = player.recording.broken || player.recording.ticks === 0;
     const others = player.relay.others.length;
     const broken = player.relay.isClosed ? "this player has entered the room again, in another tab" : "no connection to the relay";
@@ -47,7 +47,7 @@ function save() {
     link.href = URL.createObjectURL(new Blob([player.recording.finish()]));
     link.download = "push.replay";
     link.click();
-    // Saving ends the recording, even if the match goes on.
+    // The recording ends when it is saved, even if the match goes on.
     element("save").textContent = `Save the replay of ${player.recording.ticks} ticks`;
 }
 

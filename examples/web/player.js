@@ -4,8 +4,9 @@ import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
 import { MatchRecording } from "./recording.js";
 
-// The identity in a room is in the session storage, so that a page that is reloaded gets its seat back. But if the host
-// of a match of two players reloads the page, both pages pause, because the other player alone has no majority.
+// Returns the identity of this page in a room. It is kept in the session storage, so that the page gets its seat back
+// after a reload. But if the page that opened a match of two players is reloaded, the match pauses for good: the other
+// player alone has no majority and cannot give the seat back.
 function identity(code) {
     const name = `lockstep2d ${code.toUpperCase()}`;
     const stored = sessionStorage.getItem(name);
@@ -19,7 +20,7 @@ export class Player {
     isOver = false;
     #input;
 
-    /** Opens a match if the room is empty, otherwise joins. `input` returns the bits of the pad. */
+    /** Opens a match if the room is empty, otherwise joins. `input` returns the bits of the held keys for a tick. */
     static async enter(url, code, input) {
         const { secret, key } = identity(code);
         const relay = await Relay.connect(url, code, { secret });

@@ -1,5 +1,5 @@
-// Records the final inputs of a match as commands of a world: a replay that needs no rules, for `lockstep2d verify` and
-// the viewer.
+// Records the final inputs of a match as commands to a world. The replay can be verified (`lockstep2d verify`) and
+// viewed without the rules of the game.
 import { Commands, Recording } from "lockstep2d";
 import { Game, setUp } from "./game.js";
 
@@ -20,8 +20,8 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the final ticks so far. Call it every few seconds, because the match keeps inputs only for minutes. Has
-     * no effect after `finish`. */
+    /** Records the final ticks that are not recorded yet. Call it every few seconds, because the match keeps inputs
+     * only for minutes. Has no effect after `finish`. */
     follow(match) {
         if (this.broken || this.#file !== undefined || match.status === "connecting") {
             return;
@@ -43,7 +43,7 @@ export class MatchRecording {
         }
     }
 
-    /** The replay of the recorded ticks. Ends the recording; further calls return that replay again. */
+    /** Ends the recording and returns the replay of the recorded ticks. Further calls return the same replay. */
     finish() {
         this.#file ??= this.#finish();
         return this.#file;

@@ -1,4 +1,4 @@
-//! Worlds with different broad phases. See `broad_phases`.
+//! Worlds that differ only in their broad phase must have equal states. See `broad_phases`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! A planted fault that must be found. See `lockstep::run_with_a_fault`.
+//! A scene with a deliberate fault, which the harness must find. See `lockstep::run_with_a_fault`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Scenes and commands in two worlds that must not differ. See `lockstep`.
+//! Two worlds that execute the same commands must have equal states. See `lockstep`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

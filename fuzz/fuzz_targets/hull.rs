@@ -1,4 +1,4 @@
-//! Hulls of points. See `hulls`.
+//! Compares the convex hull of points with its definition. See `hulls`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

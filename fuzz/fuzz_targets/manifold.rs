@@ -1,4 +1,4 @@
-//! Contacts of two shapes. See `manifolds`.
+//! Compares the contact of two shapes with a slow search in big integers. See `manifolds`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

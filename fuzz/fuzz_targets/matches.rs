@@ -1,4 +1,4 @@
-//! Peers of a running match that receive forged packets, in bounded memory. See `matches`.
+//! A running match whose peers receive forged packets. Its memory must stay within a limit. See `matches`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

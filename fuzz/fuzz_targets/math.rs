@@ -1,4 +1,4 @@
-//! Operations of the maths module. See `maths`.
+//! Compares operations of `lockstep2d::math` with exact fractions. See `maths`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

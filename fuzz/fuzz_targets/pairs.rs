@@ -1,4 +1,4 @@
-//! Two shapes at changing relative positions. See `pairs`.
+//! Contacts of two shapes at changing relative positions must not depend on caches. See `pairs`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Queries of changing worlds. See `questions`.
+//! Queries of changing worlds must not depend on the broad phase. See `questions`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

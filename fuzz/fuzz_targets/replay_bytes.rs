@@ -7,7 +7,7 @@ use lockstep2d_fuzz::{allocations, bytes::replay};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes: a world and its scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes. The verification of a small file needs a world and its scratch memory.
 const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -7,7 +7,7 @@ use lockstep2d_fuzz::{allocations, verdicts};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes, for files within the limits.
+/// Maximum memory in bytes to verify a file that is within the limits.
 const MEMORY_MAX: usize = 256 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

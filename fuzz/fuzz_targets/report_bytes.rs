@@ -7,7 +7,7 @@ use lockstep2d_fuzz::{allocations, bytes::report};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes: some worlds and their scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes. The comparison of two small files needs several worlds and their scratch memory.
 const MEMORY_MAX: usize = 8 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -7,7 +7,7 @@ use lockstep2d_fuzz::{allocations, reports};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes, for two files within the limits.
+/// Maximum memory in bytes to compare two files that are within the limits.
 const MEMORY_MAX: usize = 256 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -7,7 +7,7 @@ use lockstep2d_fuzz::{allocations, bytes::snapshot};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes: two worlds and their scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes. A run with a small file needs two worlds and their scratch memory.
 const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {

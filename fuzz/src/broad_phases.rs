@@ -1,5 +1,5 @@
-//! Worlds that differ in their broad phase must have equal states, events and numbers of pairs. Crowds of bodies are
-//! spawned, despawned, teleported and resized.
+//! Worlds that differ only in their broad phase must have equal states, events and numbers of pairs. The scene is a
+//! crowd of bodies, in which bodies are spawned, despawned, teleported and resized.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,12 +11,13 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// Maximum cost of a run: [`generator::cost`] plus `n * n / 64` with `n` shapes, summed over the ticks.
+/// Maximum cost of a run. The cost of a tick is [`generator::cost`] plus `n * n / 64` for `n` shapes, because brute
+/// force compares all pairs. A run ends in the tick in which the sum exceeds the maximum.
 const COST_MAX: u64 = 120_000;
-/// A crowd of this number of shapes grows no further, because brute force compares all pairs.
+/// If the world has this number of shapes or more, no further bodies arrive.
 const SHAPES_MAX: usize = 600;
 
-/// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.
+/// Simulates the crowd that the bytes describe. Returns the sum of the numbers of pairs of all ticks.
 ///
 /// # Panics
 /// When the worlds differ.
@@ -82,7 +83,7 @@ impl Crowd {
             1 => ShapeDef::new(Geometry::Circle { radius: source.thousandths(2, 3000) }),
             _ => shapes::ordinary_shape(source),
         };
-        // Half of the crowds are sensors, which save the time of the solver.
+        // Half of the crowds consist of sensors, which take no time in the solver.
         shape.sensor = source.one_in(2);
         let reaches = [fx!(10), fx!(3), fx!(30), fx!(300), fx!(100000), fx!(1000000000)];
         let kind = source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Fixed]);
@@ -158,7 +159,7 @@ impl Crowd {
         let reach = self.reach;
         let mut position = Vec2::new(self.rng.range(-reach, reach), self.rng.range(-reach, reach));
         if self.rng.chance(1, 8) {
-            // Rounded positions form rows and columns, so that AABBs have equal bounds.
+            // Whole numbers as coordinates, so that many AABBs have equal bounds.
             position = Vec2::new(self.rng.range(fx!(-4), fx!(4)).round(), position.y.round());
         }
         BodyPose {

@@ -1,4 +1,5 @@
-//! Takes a replay apart according to `docs/FORMAT.md`, changes it, and repairs all checksums.
+//! Forges replays: splits a file into the parts that `docs/FORMAT.md` specifies, changes them, and corrects all
+//! checksums.
 
 use lockstep2d::hash::StateHash;
 
@@ -67,7 +68,7 @@ pub fn repair(file: &mut Vec<u8>) {
     }
 }
 
-/// Changes, inserts, removes or copies a few bytes, or cuts off the end.
+/// Makes one random change: changes, inserts, removes or copies a few bytes, or truncates `bytes`.
 pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
     let at = source.below(bytes.len());
     match source.below(7) {
@@ -75,7 +76,7 @@ pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
         0 => bytes[at] ^= 1 << source.below(8),
         1 => bytes[at] = source.byte(),
         2 => {
-            // Writes a number near a limit, in the width of a field.
+            // Writes a number near a limit, with 8, 4 or 2 bytes, as fields have.
             let number = source.edge().to_bits().to_le_bytes();
             let width = source.pick(&[8, 4, 2]).min(bytes.len() - at);
             bytes[at..at + width].copy_from_slice(&number[..width]);

@@ -1,4 +1,4 @@
-//! Generates scenes: settings, and commands for the current state of a world.
+//! Generates scenes: the settings of a world, and for each tick commands that suit the current state of the world.
 //!
 //! Three of four scenes are ordinary ones ([`crate::ordinary`]). In the other scenes, values may be at or beyond their
 //! limits, and most bodies are small and close together, so that they touch.
@@ -12,18 +12,18 @@ use lockstep2d::{codec, fx};
 use crate::source::Source;
 use crate::{joints, ordinary, settings, shapes};
 
-/// Generates commands, and remembers handles, which may become stale.
+/// Generates commands. It remembers handles that it has used, so that later commands may use stale ones.
 pub struct Generator {
     /// Centre of the scene.
     middle: Vec2<Fx>,
-    /// Whether most ticks have no commands, so that bodies fall asleep.
+    /// Whether only the first 12 of each 64 ticks may have commands, so that bodies fall asleep.
     lulls: bool,
     bodies: Vec<BodyId>,
     shapes: Vec<ShapeId>,
     joints: Vec<JointId>,
 }
 
-/// Decides whether the scene is ordinary, and returns its settings, which are mostly valid.
+/// Decides whether the scene is ordinary, and returns the settings of its world. They are valid in most cases.
 pub fn config(source: &mut Source<'_>) -> Config {
     let ordinary = !source.one_in(4);
     source.set_ordinary(ordinary);
@@ -83,7 +83,8 @@ fn wild_config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// New settings for a world, which usually keep its limits of bodies, shapes, joints and pairs.
+/// New settings for a world. In 11 of 12 cases they keep its limits of bodies, shapes, joints and pairs, which the
+/// world refuses to change.
 fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
     let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
     let config = wild_config(source);
@@ -98,7 +99,7 @@ impl Generator {
     /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
         let edge = WORLD_EXTENT_MAX - fx!(3);
-        // Ordinary scenes are not at the edge of the world, because clamping a body there counts as a fault.
+        // Ordinary scenes are not at the edge of the world, because a body that is clamped there counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_ordinary() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
@@ -106,7 +107,7 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// The commands of the first tick. A scene that is not ordinary mostly gets a floor and a heap.
+    /// The commands of the first tick. A scene that is not ordinary gets a heap, in most cases on a floor.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_ordinary() {
@@ -165,7 +166,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // A kinematic body can usually reach the target in one tick.
+                // In 5 of 6 cases the target is so near that a kinematic body can reach it in one tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -236,7 +237,7 @@ impl Generator {
         self.middle + Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
     }
 
-    /// Adds 1 to 80 equal bodies at one point or around it.
+    /// Adds 1 to 80 bodies with equal shapes, at one point or around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
         let count = source.pick(&[12, 5, 20, 14, 3, 16, 8, 12, 1, 12, 18, 16, 10, 14, 40, 80]);
         let asleep = source.one_in(6);
@@ -313,7 +314,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A command that changes a joint. The world refuses the command if it names other bodies than the joint has.
+    /// A command that changes a joint. In 1 of 8 cases it usually names other bodies, and the world refuses it.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);
@@ -333,7 +334,7 @@ impl Generator {
         Command::SetJoint { joint, def }
     }
 
-    /// Mostly an existing body, sometimes a handle that may be stale or was never valid.
+    /// Handle of a body: in most cases of an existing one, sometimes a handle that may be stale or was never valid.
     fn body(&mut self, source: &mut Source<'_>, world: &World) -> BodyId {
         let present: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.bodies)
@@ -388,7 +389,7 @@ pub(crate) mod serde_handle {
     of_bytes!(BodyId, ShapeId, JointId);
 }
 
-/// Approximate cost of a tick, used to bound a run.
+/// Approximate cost of a tick, in arbitrary units. Targets limit the sum of these costs in a run.
 #[must_use]
 pub fn cost(world: &World) -> u64 {
     let solver = world.config().solver;

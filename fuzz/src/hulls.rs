@@ -1,4 +1,5 @@
-//! Compares hulls with their definition: an edge is a pair of points with all other points to its left or on it.
+//! Compares convex hulls with their definition: two points are an edge if all other points are to its left, or on it
+//! between the two points.
 
 use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
 use lockstep2d::math::{Fx, Length, Rng, Vec2};
@@ -12,10 +13,11 @@ const EDGE_MIN: i64 = (1 << 22) / 2000;
 
 type Point = Vec2<Length>;
 
-/// Makes the hull of some points. Returns whether there is one.
+/// Makes the hull of the points that the bytes describe. Returns whether [`Polygon::hull`] accepts them.
 ///
 /// # Panics
-/// When the hull is wrong or depends on order or repetition of points, or when a valid hull is refused.
+/// If the hull is wrong or depends on the order or the repetition of points, or if points with a valid hull are
+/// refused.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     let points = points(&mut source);
@@ -60,7 +62,7 @@ fn points(source: &mut Source<'_>) -> Vec<Vec2<Fx>> {
     let way = source.below(4);
     (0..source.below(20))
         .map(|_| match way {
-            // The points are on a grid with few lines.
+            // Points on a grid of 4 by 4, so that many are equal or on one line.
             0 => Vec2::new(Fx::from(source.below(4) as i32), Fx::from(source.below(4) as i32)),
             1 => source.mostly_vec(-reach, reach),
             2 => {
@@ -80,7 +82,7 @@ fn cross(a: Point, b: Point, c: Point) -> BigInt {
     difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x)
 }
 
-/// The edges, found by the definition.
+/// The edges of the hull, found by testing the definition for all pairs of points.
 fn slow_hull(points: &[Point]) -> Vec<(Point, Point)> {
     let mut edges = Vec::new();
     for &a in points {
@@ -102,18 +104,21 @@ fn is_between(c: Point, a: Point, b: Point) -> bool {
     (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
 }
 
-/// Whether an edge is more than one unit longer than the minimum. If so, its rounded length is legal, too.
+/// Whether the exact length of an edge exceeds the minimum by more than one unit. Then its rounded length does not fall
+/// below the minimum.
 fn length_is_legal(a: Point, b: Point) -> bool {
     let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
     let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
     square > BigInt::from(EDGE_MIN + 1).pow(2)
 }
 
-/// Checks that a normal is perpendicular to its edge within rounding, and points outwards, to the right of the edge.
+/// Checks that the normal of the edge from `a` to `b` is perpendicular to it except for rounding, and points outwards,
+/// to the right of the edge.
 fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
     let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
     let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());
-    // Each component of the normal n has an error of at most 0.76 units, so |n . e| < 0.77 (|ex| + |ey|) units.
+    // Each component of the normal n has an error of at most 0.76 units. For an edge vector e, therefore |n . e| < 0.77
+    // (|ex| + |ey|) units.
     let along: BigInt = (&x * &dx + &y * &dy).abs();
     assert!(along * 100 <= (dx.abs() + dy.abs()) * 77, "{normal:?} from {a:?} to {b:?}");
     assert!((&x * &dy - &y * &dx).is_positive(), "{normal:?} points inwards");

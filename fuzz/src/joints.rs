@@ -1,4 +1,4 @@
-//! Generates joints of every kind, mostly with moderate parameters, sometimes with parameters beyond their limits.
+//! Generates joints of every kind. Most parameters are moderate, some are beyond their limits.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -10,7 +10,7 @@ use lockstep2d::solver::{
 
 use crate::source::Source;
 
-/// A joint between two bodies, valid or not.
+/// A joint between two bodies, with parameters that may be invalid.
 pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     let mut def = JointDef::new(a, b, kind(source));
     let anchor = |source: &mut Source<'_>| match source.below(4) {
@@ -18,7 +18,8 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
         1 | 2 => source.mostly_vec(-800, 800),
         _ => {
             let far = source.mostly_vec(-128_000, 128_000);
-            // Anchors on fixed bodies may be anywhere.
+            // Anchors on fixed bodies may be far from the origin of the body, so some anchors are further away than
+            // those of other bodies may be.
             if far.x.to_bits() & 1 == 0 { far } else { Vec2::new(far.x.saturating_mul(fx!(9)), far.y) }
         }
     };
@@ -29,7 +30,8 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     finish(source, def)
 }
 
-/// Sets properties that all kinds share.
+/// Sets the properties that all kinds of joints have: whether connected bodies collide, thresholds, user data and
+/// softness.
 pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def.collide_connected = source.one_in(2);
     if source.one_in(4) {
@@ -45,7 +47,7 @@ pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def
 }
 
-/// A joint kind with its parameters, valid or not.
+/// A kind of joint with parameters that may be invalid.
 pub fn kind(source: &mut Source<'_>) -> JointKind {
     match source.below(12) {
         0 | 1 => Revolute { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
@@ -150,7 +152,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
     joint
 }
 
-/// A joint kind for neighbouring bodies whose anchors are at the same point. Most parameters are moderate.
+/// A kind of joint with moderate parameters, for neighbouring bodies whose anchors are at the same point.
 pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);

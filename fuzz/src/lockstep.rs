@@ -1,5 +1,6 @@
-//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The other world has
-//! another broad phase, is reloaded from bytes, or has its caches cleared.
+//! Runs one scene in two worlds and checks that they never differ. The plain world is rolled back at most once. The
+//! other world uses another broad phase, is reloaded from its own bytes between ticks, or loses its caches between
+//! ticks.
 
 use std::sync::Mutex;
 
@@ -10,11 +11,11 @@ use lockstep2d::world::{Backend, BodyField, Command, Events, Snapshot, World};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// Maximum of [`generator::cost`], summed over the ticks.
+/// A run ends early when the sum of [`generator::cost`] over its ticks exceeds this number.
 const COST_MAX: u64 = 60_000;
 /// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
-/// Interval in ticks of the invariant checks, which take most of the time of a small world.
+/// Interval of the invariant checks, in ticks. In small worlds, most of the time goes to these checks.
 const CHECK_INTERVAL: u64 = 8;
 
 /// Statistics of a run.
@@ -22,7 +23,7 @@ const CHECK_INTERVAL: u64 = 8;
 pub struct Seen {
     /// Ticks simulated.
     pub ticks: u64,
-    /// Touching contacts, summed over the ticks.
+    /// Number of touching contacts at the end of a tick, summed over the ticks.
     pub touching: u64,
     /// Maximum number of touching contacts at the end of a tick.
     pub most_touching: u64,
@@ -34,22 +35,23 @@ pub struct Seen {
     pub faults: u64,
     /// Bodies that fell asleep.
     pub slept: u64,
-    /// Shapes detected by sensors.
+    /// Number of events that report a shape entering a sensor.
     pub noticed: u64,
-    /// Hit events, and events of joints above their threshold.
+    /// Number of hit events plus events that report a joint above its threshold of force or torque.
     pub hits: u64,
-    /// Whether the scene is ordinary and should have no faults.
+    /// Whether the scene is ordinary. Hardly any ordinary scene has faults (see [`crate::ordinary`]).
     pub ordinary: bool,
 }
 
-/// A variant that must not change the result. With [`BroadPhaseKind::BruteForce`] it uses no vector instructions.
+/// Configuration of the other world, which must not change any result. [`BroadPhaseKind::BruteForce`] also selects the
+/// scalar backend, which uses no vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Variant {
     broad_phase: BroadPhaseKind,
     disturbance: Disturbance,
 }
 
-/// A disturbance of the second world between ticks.
+/// A disturbance of the other world between ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Disturbance {
     None,
@@ -89,10 +91,11 @@ pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// Runs the scene like [`run`]. While many shapes touch, flips a bit of a body of the second world.
+/// Runs the scene like [`run`]. In addition, flips a bit of the eighth body of the other world before each tick, if
+/// more than 12 contacts touch at that time.
 ///
 /// # Panics
-/// When more than 12 contacts touch and the eighth body accepts the flip.
+/// Like [`run`]. In particular, when the eighth body accepts a flip, because the worlds then differ.
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
@@ -203,7 +206,7 @@ impl Variants {
                 Ok(_) => seen.done += 1,
                 Err(error) => {
                     seen.refused += 1;
-                    // The second world has not executed the command, so it has the state before the command.
+                    // The other world has not executed this command yet, so it still has the state before the command.
                     let changed = plain.digest().differing(&other.digest());
                     assert!(
                         changed.is_empty(),
@@ -239,7 +242,8 @@ struct Rollback {
 }
 
 impl Rollback {
-    /// Restores the state in a world that keeps the caches of a later tick, and plays the ticks again.
+    /// Restores the saved state and plays the ticks again, with the same hashes and events. The caches are not
+    /// restored: the world keeps those of a later tick.
     fn repeat(self, world: &mut World) {
         world.restore(&self.save);
         for (commands, hash, events) in &self.ticks {

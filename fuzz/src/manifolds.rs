@@ -1,4 +1,5 @@
-//! Compares contacts and distances with a search over all axes and pairs of features in big integers.
+//! Compares the contact and the distance of two shapes with exact values. These come from a search over all face
+//! normals and all pairs of a vertex and an edge, in arithmetic on big integers.
 
 use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Rot, Step, Vec2};
@@ -12,10 +13,11 @@ use crate::source::Source;
 /// A point in units of 2^-32 m.
 type Point = [BigInt; 2];
 
-/// Maximum error of a separation in micrometres: 500 + 500 + 1. A face of B is chosen only if it is better than the
-/// best face of A by more than 500. Outlines up to 500 apart count as touching. Rounding adds 1.
+/// Maximum error of a separation, in micrometres: 500 because a face of B is chosen only if its separation exceeds that
+/// of the best face of A by more than 500, 500 because outlines up to 500 apart count as touching, and 1 for rounding.
 const CONTACT_ERROR: i64 = 1_001;
-/// Maximum error of a distance in micrometres: 20 nm, and 240 nm from rounding a rotated vertex.
+/// Maximum error of a distance, in micrometres. The actual errors are 20 nm from the algorithm and 240 nm from rounding
+/// a rotated vertex.
 const DISTANCE_ERROR: i64 = 1;
 
 /// All points within `radius` of the convex hull of `points`, which are counter-clockwise.
@@ -29,7 +31,7 @@ struct Solid {
 pub enum Seen {
     /// The shapes are not valid.
     Refused,
-    /// The shapes are apart, without a contact.
+    /// The shapes have no contact. Two segments never have one, even if they cross.
     Apart,
     /// Close enough for a contact, but not touching.
     Near,
@@ -76,7 +78,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let found = integer(distance.distance.to_bits()) + &radii;
     assert!(is_within(&exact, &found, DISTANCE_ERROR), "distance {}: {}", distance.distance, what());
 
-    // Two segments have no contacts.
+    // Two segments never have a contact.
     let is_segment = |geometry: &Geometry| matches!(geometry, Geometry::Segment { .. });
     if is_segment(&def_a) && is_segment(&def_b) {
         return Seen::Apart;
@@ -91,7 +93,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let manifold = contact.manifold;
     let least = manifold.points().iter().map(|point| point.separation).min().expect("a contact has points");
     let found = integer(Fx::from(least).to_bits()) + &radii;
-    // A separation beyond the range of its type is reported as the minimum of the type.
+    // A separation below the range of `Step` is reported as `Step::MIN`.
     let saturated = least == Step::MIN;
     let right = match saturated {
         true => exact <= signed_square(&(found + micrometres(CONTACT_ERROR))),
@@ -122,7 +124,7 @@ fn micrometres(count: i64) -> Exact {
     Exact::new(BigInt::from(count) << 32, BigInt::from(1_000_000))
 }
 
-/// A geometry other than a link, up to some decimetres times `scale`.
+/// A geometry other than a link. Its coordinates and radii are at most 0.5 m times `scale`. `None` if it is invalid.
 fn geometry(source: &mut Source<'_>, scale: i64) -> Option<Geometry> {
     let size = |source: &mut Source<'_>| source.thousandths(2, 500 * scale);
     let point = |source: &mut Source<'_>| {
@@ -172,7 +174,7 @@ impl Solid {
         Solid { points, radius: radius.to_bits().into() }
     }
 
-    /// The edges. Two points have two edges, and a single point has none.
+    /// The edges. Two points have two edges, one in each direction, and a single point has none.
     fn edges(&self) -> impl Iterator<Item = (&Point, &Point)> {
         let count = self.points.len();
         (0..count)
@@ -180,7 +182,7 @@ impl Solid {
             .map(move |at| (&self.points[at], &self.points[(at + 1) % count]))
     }
 
-    /// Squared distance of a point from the hull of the points, and 0 for a point inside.
+    /// Squared distance of a point from the convex hull of `self.points`. It is 0 for a point inside the hull.
     fn square_distance(&self, point: &Point) -> Exact {
         if self.points.len() > 2 && self.edges().all(|(a, b)| !cross(a, b, point).is_negative()) {
             return Exact::zero();
@@ -223,7 +225,8 @@ fn signed_square(x: &Exact) -> Exact {
     x * x.abs()
 }
 
-/// Signed square of the distance of the hulls. If the hulls overlap, the distance is the negative penetration depth.
+/// Signed square of the distance between the two convex hulls. If the hulls overlap, the distance is the negative
+/// penetration depth.
 fn separation(a: &Solid, b: &Solid) -> Exact {
     let of_axes = |a: &Solid, b: &Solid| {
         let face = |(start, end): (&Point, &Point)| {
@@ -238,8 +241,9 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
         [(a, b), (b, a)].into_iter().flat_map(|(a, b)| a.points.iter().map(|point| b.square_distance(point)));
     let apart = apart.min().unwrap_or_else(Exact::zero);
     match deepest {
-        // For crossing segments, `apart` is the distance of an end point and so positive, but `deepest` is negative.
-        // For collinear segments that are apart, `deepest` is zero.
+        // `apart` is wrong for crossing segments: it is the distance of an end point and so positive. But `deepest` is
+        // negative then. `deepest` is wrong for collinear segments that are apart: it is zero. But `apart` is positive
+        // then.
         Some(deepest) if !deepest.is_positive() && (deepest.is_negative() || apart.is_zero()) => deepest,
         _ => apart,
     }

@@ -17,7 +17,7 @@ use crate::forge::mutate;
 use crate::memory::Memory;
 use crate::source::Source;
 
-/// Number of turns of 10 ms.
+/// Length of a match, in turns of 10 ms.
 const TURNS: u32 = 500;
 /// Turn in which the third peer requests to join or to watch.
 const NEWCOMER: u32 = 150;
@@ -26,7 +26,7 @@ const STRANGER: u32 = 9;
 /// Number of packets that the attacker remembers.
 const PACKETS: usize = 64;
 
-/// The last packets that were sent: number of the sender, and bytes.
+/// The last [`PACKETS`] packets that the peers sent, each with the port number of its sender.
 type Heard = Rc<RefCell<VecDeque<(u32, Vec<u8>)>>>;
 
 struct Tapped {
@@ -53,7 +53,7 @@ impl Transport for Tapped {
 /// Statistics of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Last tick confirmed by both host and player, or 0 if one of them has stopped.
+    /// Last tick that both the host and the second peer have confirmed, or 0 if one of them has stopped.
     pub ticks: u64,
     /// Number of packets that the attacker sent.
     pub packets: u64,
@@ -61,7 +61,8 @@ pub struct Seen {
     pub stopped: bool,
     /// Whether a peer has detected a desync. Forged packets can cause that.
     pub diverged: bool,
-    /// Whether a third peer has joined or watched.
+    /// Whether a third peer has joined or watched and has played a tick. False if the host or the second peer has
+    /// stopped.
     pub late: bool,
 }
 
@@ -75,10 +76,11 @@ struct Match {
     seen: Seen,
 }
 
-/// Plays a match of a hundred ticks, disturbed as the bytes describe.
+/// Plays a match of 5 s (a hundred ticks), disturbed as the bytes describe.
 ///
 /// # Panics
-/// When a peer's report or replay is invalid. Also when packets without a correct checksum make peers stop or differ.
+/// When a peer's report or replay is invalid. Also when a peer stops or the states differ, although the attacker cannot
+/// make correct checksums.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let options = source.pick(&[PeerOptions::lockstep(), PeerOptions::rollback()]);

@@ -1,5 +1,5 @@
-//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. In about one scene in
-//! five hundred, a value is still clamped, for example when a chain is spawned across a pile.
+//! Ordinary scenes: piles, containers, drums and chains of moderate sizes, masses and speeds. Faults are rare: a value
+//! is clamped in about one scene in five hundred, for example when a chain is spawned across a pile.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -113,7 +113,7 @@ fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     )
 }
 
-/// Adds equal bodies in rows, some slightly apart or overlapping.
+/// Adds equal bodies in rows. Neighbours touch, overlap slightly, or are up to 10 cm apart.
 pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = ordinary_shape(source);
     let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
@@ -129,8 +129,8 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // In a short scene, the half second until bodies sleep is long. Most piles get a higher sleep speed, to sleep
-    // sooner.
+    // Bodies sleep after half a second of rest, which is much of a short scene. Most piles get a higher sleep speed, so
+    // that they count as resting earlier.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
@@ -146,7 +146,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     }
 }
 
-/// Adds joined bodies, the first usually joined to a fixed body.
+/// Adds a row of bodies, each joined to the next. The first body is usually joined to a fixed body.
 fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let slot = |commands: &[Command]| {
         let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
@@ -244,7 +244,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
     let mut joint = JointDef::new(body, other, joints::ordinary_kind(source)).anchor_a(a).anchor_b(b);
-    // The angle is the current one, so that joints that hold the angle have nothing to correct.
+    // Frame B gets the current relative angle of the bodies, so that joints that hold an angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))
 }

@@ -1,5 +1,5 @@
-//! Two shapes at changing relative positions. Their contact must not depend on caches or on SIMD. Except for ties, the
-//! contact must not depend on the order of the shapes either.
+//! Two shapes at changing relative positions. Their contact must not depend on caches or on SIMD. If the shapes are
+//! exchanged, its separation may change by at most `ERROR`.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,13 +11,15 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference in metres between two separations, or between a separation and a distance: 0.5 mm + 0.5 mm +
-/// 1 µm. A face of the second shape is chosen only if it is better than the best face of the first by more than 0.5 mm.
-/// Outlines up to 0.5 mm apart count as touching. Rounding adds 1 µm.
+/// Maximum difference between two separations, or between a separation and a distance, in metres: 0.5 mm because a face
+/// of the second shape is chosen only if its separation exceeds that of the best face of the first by more than 0.5 mm,
+/// 0.5 mm because outlines up to 0.5 mm apart count as touching, and 1 µm for rounding.
 const ERROR: Fx = fx!(0.001001);
-/// Maximum difference in metres between the distances of A from B and of B from A: twice 20 nm, rounded up.
+/// Maximum difference, in metres, between the distance from A to B and the one from B to A: twice the error of a
+/// distance (20 nm), rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
-/// The distance of the nearest points plus 250 m, divided by this number, is added to [`DISTANCE_ERROR`].
+/// Divisor for the part of the error that grows with the distance: the distance between the nearest points plus 250 m,
+/// divided by this number, is added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;
 
 #[derive(Clone)]
@@ -130,7 +132,8 @@ impl Pair {
     }
 }
 
-/// Checks that exchanging the shapes keeps their distance and, if they are apart, reverses the normal.
+/// Checks that the distance stays the same when the shapes are exchanged. If they are more than 1 mm apart, also checks
+/// that the normal then points the opposite way, and that the nearest points are at this distance from each other.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };
@@ -162,8 +165,8 @@ fn distances(pair: &Pair) {
     }
 }
 
-/// Whether consecutive edges of a polygon are almost parallel. Their normals are then not precise enough to decide
-/// which edge is nearest.
+/// Whether two consecutive edges of a polygon are almost parallel. Their normals are then not precise enough to decide
+/// which of the edges is nearer to the other shape.
 fn is_thin(def: &ShapeDef) -> bool {
     let Geometry::Polygon(polygon) = &def.geometry else { return false };
     let normals = polygon.normals();

@@ -15,11 +15,13 @@ use crate::source::Source;
 
 mod singles;
 
-/// Maximum of [`generator::cost`], summed over the ticks.
+/// A run ends early when the sum of [`generator::cost`] over its ticks exceeds this number.
 const COST_MAX: u64 = 60_000;
-/// Maximum difference in metres between two ways to compute a point.
+/// Maximum difference, in metres, between a distance that follows from the result of a query and the same distance
+/// computed directly.
 const TOLERANCE: Fx = fx!(0.005);
-/// Maximum depth in metres of a probe in a shape that it rests on, or in the next shape when it passes a seam.
+/// Maximum penetration depth, in metres, of a probe into a shape that it rests on, or into the next shape when it
+/// passes a seam.
 const DEPTH_OF_REST: Fx = fx!(0.021);
 
 /// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
@@ -39,7 +41,7 @@ pub fn run(bytes: &[u8]) -> u64 {
         for command in &commands {
             assert_eq!(world.execute(command), sweep.execute(command), "{command:?}");
         }
-        // Queries are also asked between the commands and the next tick.
+        // Queries must also work between the commands and the tick.
         if source.one_in(3) {
             answers += ask(&mut source, &world, &sweep);
         }
@@ -61,7 +63,7 @@ struct Questions<'a> {
     sweep: &'a World,
     brute_force: World,
     filter: QueryFilter,
-    /// Whether the scene is ordinary. Rounding errors are small then.
+    /// Whether the scene is ordinary. Only then are rounding errors small enough to compare results with distances.
     ordinary: bool,
 }
 
@@ -120,7 +122,7 @@ impl Questions<'_> {
         answer
     }
 
-    /// The shapes that a query with this filter can find.
+    /// The shapes that a query with `self.filter` can find.
     fn seen(&self) -> impl Iterator<Item = ShapeId> {
         self.world.shapes().filter_map(|(id, shape)| {
             let (filter, own) = (self.filter, shape.filter());
@@ -168,7 +170,8 @@ impl Questions<'_> {
         self.world.probe_distance(&probe, shape).expect("the shape exists").distance.saturating_add(radius)
     }
 
-    /// Checks that the overlapping shapes are found. `distance` gives the distance of a shape from the query's shape.
+    /// Checks that `found` has the shapes that overlap the shape of a query, and no others. `distance` gives the
+    /// distance of a shape from the shape of the query.
     fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
         assert!(found.is_sorted_by(|a, b| a < b), "the shapes must be in slot order");
         if self.ordinary {
@@ -258,7 +261,7 @@ impl Questions<'_> {
         let first = self.same(|world| world.cast_ray(origin, way, self.filter));
         assert_eq!(first, hits.first().copied(), "the single hit must be the first of all hits");
         assert_eq!(self.same(|world| world.cast_ray_any(origin, way, self.filter)), first.is_some());
-        // Hits with equal rounded fractions may be ordered by the exact fractions.
+        // Hits are ordered by their exact fractions, so hits with equal rounded fractions need not be in slot order.
         assert!(hits.is_sorted_by_key(|hit| hit.fraction), "hits must be in ascending order of the fraction");
         let seen: Vec<_> = self.seen().collect();
         for hit in &hits {
@@ -305,8 +308,8 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Checks that a cast stops where it touches, and passes no shape. `distance` gives the distance of a shape from
-    /// the probe at a fraction of the cast.
+    /// Checks that a cast ends where the probe touches the hit shape, and that it passes through no shape before.
+    /// `distance` gives the distance of a shape from the probe at a fraction of the cast.
     fn check_cast(&self, hit: Option<CastHit>, distance: impl Fn(Fx, ShapeId) -> Fx) {
         let touched_before = |shape| distance(Fx::ZERO, shape) <= TOLERANCE;
         if let Some(hit) = hit {
@@ -314,7 +317,8 @@ impl Questions<'_> {
             let good = away.abs() <= TOLERANCE || touched_before(hit.shape);
             assert!(good, "{hit:?} stops {away} m before the shape");
         }
-        // A cast passes seams. There, the probe may be as deep in the next shape as in the shape that it rests on.
+        // A cast slides over seams between shapes. There, the probe may be as deep in the next shape as in the shape
+        // that it rests on.
         let rests = self.seen().any(|shape| touched_before(shape));
         let deeper = if rests { DEPTH_OF_REST } else { Fx::ZERO };
         let inside = |fraction, shape| distance(fraction, shape).saturating_add(deeper);
@@ -326,7 +330,8 @@ impl Questions<'_> {
         }
     }
 
-    /// Tests the planes of a mover, and the plane solver with arbitrary limits and separations.
+    /// Compares the planes of a mover between the broad phases. Also runs the plane solver with arbitrary limits and
+    /// separations, only to see that it does not panic.
     fn planes(&self, source: &mut Source<'_>) -> bool {
         let Some(probe) = self.probe(source) else { return false };
         let within = source.mostly(0, 2000);
@@ -363,8 +368,8 @@ impl Questions<'_> {
         met
     }
 
-    /// The shapes in which the probe is deeper than the tolerance at one of 17 samples of a path, each with the
-    /// fraction. Links are left out because they may be one-sided.
+    /// Samples a path at 17 fractions from 0 to 1. Returns each fraction with each shape whose `distance` there is
+    /// below -[`TOLERANCE`]. Links are left out, because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,

@@ -17,7 +17,7 @@ use crate::verdicts;
 const HEADER_LEN: usize = 24;
 const HASH_LEN: usize = 16;
 
-/// A report after its header, as described in `docs/FORMAT.md`.
+/// The bytes of a report between its header and its hash, as described in `docs/FORMAT.md`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Body {
     rules: (String, u32),
@@ -31,12 +31,14 @@ struct Body {
     replay: Vec<u8>,
 }
 
-/// The phase digests of a tick.
+/// The phase digests of a tick, and the state of the world at the start of the tick's last step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Phases {
     digests: Vec<StateHash>,
-    /// Patches of the world's bytes: offset and new bytes.
+    /// Patches (offset and new bytes) that turn the world's bytes after the previous tick into those at the start of
+    /// the step.
     start: Vec<(u64, Vec<u8>)>,
+    /// Number of bytes of the world at the start of the step.
     length: u64,
 }
 
@@ -56,11 +58,11 @@ struct Trajectory {
 }
 
 /// Compares the reports of two peers. The first peer may have diverged or forged its report, and the second
-/// is correct. Returns the result as one word.
+/// is correct. Returns a name for the result.
 ///
 /// # Panics
-/// If an unchanged report within the limits is refused, or one with a wrong hash is accepted. Also if the
-/// comparison blames a correct side, or if the blame depends on the order of the sides.
+/// If an unchanged report within the limits is refused, or a report with a wrong hash is accepted. Also if the
+/// comparison blames the correct side, or if the blame depends on the order of the sides.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -174,7 +176,7 @@ impl Trajectory {
     }
 }
 
-/// Replaces the body of a report and repairs the hash.
+/// Replaces the body of a report, and corrects its length and its hash.
 fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
     let mut sealed = file[..HEADER_LEN - 8].to_vec();
     sealed.extend((body.len() as u64).to_le_bytes());
@@ -184,7 +186,7 @@ fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
     sealed
 }
 
-/// Makes one change. `replay` is the genuine replay.
+/// Makes one random change to the body of a report. `replay` is the correct replay of the report.
 fn forge(source: &mut Source<'_>, body: &mut Body, replay: &[u8]) {
     let at = source.below(body.history.len());
     match source.below(13) {

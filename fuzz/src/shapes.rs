@@ -1,4 +1,4 @@
-//! Generates shapes: mostly 0.1 to 2 m, sometimes at or beyond the limits.
+//! Generates shapes: mostly 0.1 to 2 m long, sometimes with numbers at or beyond the limits.
 
 use lockstep2d::body::{
     Area, Attraction, Chain, EventSwitches, Falloff, Filter, Geometry, Material, Mixing, Polygon, ShapeDef,
@@ -74,7 +74,7 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     }
 }
 
-/// A shape of an ordinary scene: 0.2 to 1.4 m, with similar densities.
+/// A shape of an ordinary scene: 0.2 to 1.4 m long, with a density of 0.5 to 2.
 pub fn ordinary_shape(source: &mut Source<'_>) -> ShapeDef {
     let geometry = match source.below(10) {
         8 | 9 => {
@@ -129,7 +129,7 @@ pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
         Vec2::new(x, source.thousandths(-300, 300))
     };
     let mut points: Vec<_> = (0..=stretches).map(|index| point(source, index)).collect();
-    // One-sided chains from right to left are solid from above.
+    // A one-sided chain whose points go from right to left is solid from above.
     let one_sided = source.one_in(3);
     if one_sided {
         points.reverse();
@@ -287,7 +287,7 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     codec::decode(&codec::encode(&(vertices, radius))).ok()
 }
 
-/// The present definition of a shape with one property changed, or a new definition.
+/// The current definition of a shape with one property changed, or an entirely new definition.
 pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> ShapeDef {
     let fresh = shape(source);
     let Some(mut def) = world.shape(id).map(|shape| *shape.def()) else { return fresh };

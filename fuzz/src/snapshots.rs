@@ -1,4 +1,4 @@
-//! Reads forged snapshots.
+//! Reads snapshots with changed fields or bytes, and arbitrary bytes.
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
@@ -12,15 +12,15 @@ use crate::source::Source;
 /// Size of the header: magic, format, semantics, length.
 const HEADER_BYTES: usize = 24;
 const HASH_BYTES: usize = 16;
-/// Maximum cost of a tick, as counted by [`generator::cost`].
+/// A world is simulated only while [`generator::cost`] is at most this number.
 const COST_MAX: u64 = 30_000;
 
-/// Reads a snapshot, and returns whether it is accepted. The snapshot is `bytes`, or that of a small scene with changed
-/// fields or bytes and, in most cases, a repaired hash.
+/// Reads a snapshot, and returns whether it is accepted. In one of 32 runs, the snapshot is the rest of `bytes`.
+/// Otherwise it is that of a small scene, with changed fields or bytes and, in most cases, a corrected hash.
 ///
 /// # Panics
-/// When a decoded world encodes to other bytes. Also when the world, within ten ticks, breaks an invariant or depends
-/// on its caches or its broad phase.
+/// When an accepted world does not encode to the bytes from which it was decoded. Also when it breaks an invariant
+/// within ten ticks, or when its state or events then depend on its caches or its broad phase.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     if source.one_in(32) {

@@ -1,5 +1,5 @@
-//! Decisions drawn from the fuzzer's bytes. When the bytes end, most decisions are the first option, so that a short
-//! input makes a short scene.
+//! Decisions drawn from the fuzzer's bytes. When no bytes are left, most decisions are the first option, so that a
+//! short input makes a short scene.
 
 use arbitrary::Unstructured;
 use lockstep2d::math::{Angle, Fx, Vec2};
@@ -10,7 +10,7 @@ pub struct Source<'a> {
     ordinary: bool,
 }
 
-/// Numbers at or near the limits of formats and parameters.
+/// Bits of [`Fx`] numbers at or near the limits of formats and parameters.
 const EDGES: [i64; 24] = [
     0,
     1,
@@ -83,12 +83,12 @@ impl<'a> Source<'a> {
         self.bytes.int_in_range(0..=bound.saturating_sub(1)).unwrap_or(0)
     }
 
-    /// True once in `n` times. False if no bytes are left.
+    /// True with a probability of `1 / n`. If no bytes are left, false (for `n` of 2 or more).
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == n - 1
     }
 
-    /// Picks one of the values.
+    /// Picks one of the values, or the first if no bytes are left. There must be at least one value.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len())]
     }

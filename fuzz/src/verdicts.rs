@@ -1,4 +1,4 @@
-//! Verifies replays of small scenes that are recorded, changed or forged, and arbitrary bytes.
+//! Verifies replays of small scenes (as recorded, with changed bytes, or forged), and arbitrary bytes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
@@ -27,7 +27,8 @@ pub fn limits() -> Limits {
 /// Verifies the file that the bytes describe.
 ///
 /// # Panics
-/// When a changed file is a `Match`, or an unchanged one is neither a `Match` nor beyond a limit.
+/// When the verdict on a changed file is `Match`, or the verdict on an unchanged file is neither `Match` nor
+/// `LimitExceeded`.
 pub fn run(bytes: &[u8]) -> Verdict {
     let mut source = Source::new(bytes);
     let way = source.below(8);

@@ -1,4 +1,5 @@
-//! Tests that the targets whose input is a file or packets reach many results. Prints the speed of the targets.
+//! Runs the fuzz targets whose input is a file or packets. Tests that random inputs give each target several different
+//! results, and prints the number of runs per second.
 
 use std::collections::BTreeMap;
 

@@ -9,20 +9,21 @@ use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
 use lockstep2d_fuzz::source::Source;
 use lockstep2d_fuzz::{generator, verdicts};
 
-/// Maximum time in nanoseconds per unit of work, with and without debug assertions and overflow checks.
+/// Maximum time per unit of work, in nanoseconds: 3000 in a build with debug assertions, and 1000 in one without.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
-/// Shortest time of a setup or a tick that is judged alone. Shorter ones are judged only as a part of their file.
+/// A setup or a tick that takes at least this time is compared with [`MAX`] by itself. Shorter ones count only in the
+/// total of their file.
 const JUDGED: Duration = Duration::from_micros(50);
 
-/// Number of runs of a file. The shortest time of the setup and of each tick counts, to exclude other load on the
-/// machine.
+/// Number of times that each file is played. For the setup and for each tick, only the shortest time counts, because
+/// other load on the machine makes some runs slower.
 const RUNS: usize = 5;
 
 /// Maximum number of ticks of a world.
 const TICKS: u64 = 60;
 
-/// A setup or a tick: its units, and the shortest time that it has taken.
+/// Cost of a setup, of a tick, or of several of them: the units of work, and the time taken.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     units: u64,

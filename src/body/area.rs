@@ -5,13 +5,13 @@
 //! body of lines, `A` is 0 and `s` is the ratio of the lengths. `M` is the body's mass.
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
-//! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
+//! dw/dt = A cross(c - p, force - density field) / (M k^2) - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `) x (` is the cross product, and every other `x` is the body's centre of mass. `k` is the radius of gyration, and
-//! `v` and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of each area
-//! that acts on the body. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the angular
-//! velocity of the area's body. The effects of several areas add up.
+//! `p` is the body's centre of mass, `k` its radius of gyration, `v` its velocity and `w` its angular velocity. `field`
+//! is the world's gravity plus `s (acceleration + attraction)` of each area that acts on the body. `u` is `flow` plus
+//! the velocity of the area's body at `p`, and `w_medium` is the angular velocity of the area's body. The effects of
+//! several areas add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ const ACCELERATION_MAX: Fx = fx!(10000);
 const FORCE_MAX: Fx = fx!(1048576);
 /// Largest component of the flow in m/s.
 const FLOW_MAX: Fx = fx!(400);
-/// Largest drag per second.
+/// Largest drag: a decay rate per second.
 const DRAG_MAX: Fx = fx!(1000);
 /// Range of an attraction's radius in metres.
 const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));

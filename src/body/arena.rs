@@ -245,7 +245,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.get(handle)?;
         let slot = &mut self.slots[handle.slot() as usize];
         let value = slot.value.take();
-        // A slot with an exhausted generation is retired: after a wrap, old handles would resolve to new values.
+        // A slot is retired if its generation is the largest `u32`. If the counter wrapped around, old handles would
+        // resolve to new values.
         if slot.generation < u32::MAX {
             slot.generation += 1;
             self.free.push(handle.slot());
@@ -268,7 +269,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Value of a handle. The caller may change any field, because the cached page copy is invalidated.
+    /// Value of a handle, or `None` if the handle is stale. The caller may change any field, because the cached page
+    /// copy is invalidated.
     pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
         self.get(handle)?;
         Some(self.redefine(handle.slot()))
@@ -287,8 +289,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the slots into consecutive ranges, each of which ends before the next slot in `ends`. The caller may
-    /// change only the fields that [`Arena::at_mut`] allows.
+    /// Divides the slots into consecutive ranges. For each slot in the ascending list `ends`, one range ends before it.
+    /// The caller may change only the fields that [`Arena::at_mut`] allows.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,

@@ -53,7 +53,7 @@ pub struct Body {
     pub(crate) centre: Vec2<Fx>,
     pub(crate) angle: Angle,
     pub(crate) velocity: Vec2<Speed>,
-    /// `u = k w`, the radius of gyration times the angular velocity.
+    /// The radius of gyration times the angular velocity, `u = k w`, in m/s.
     pub(crate) spin: Speed,
     /// Applied force in N. Cleared at the end of the next tick.
     pub(crate) force: Vec2<Fx>,
@@ -158,7 +158,7 @@ impl Body {
         Transform::new(self.position(), self.rotation())
     }
 
-    /// Velocity of the centre of mass in m/s. 0 after a step in which `World::move_to` moved the body.
+    /// Velocity of the centre of mass in m/s. Zero after a step in which `World::move_to` has moved the body.
     #[must_use]
     pub fn velocity(&self) -> Vec2<Fx> {
         self.velocity.widen()
@@ -274,7 +274,7 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass. Keeps pose, motion and the lines of action of forces. Clamps the velocity and obeys locks.
+    /// Changes the mass, but not the position, the motion or the lines of action of forces. Clamps the new velocity.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -358,7 +358,7 @@ impl Body {
     fn turn_by(&mut self, impulse: i128) {
         if self.turns() && self.has_mass() {
             let over = i128::from(self.mass.mass.to_bits()) * i128::from(self.mass.gyration.to_bits());
-            // Bits that the impulse has no room for are dropped from the divisor. Enough remain, unless `du` saturates.
+            // `du` is in units of 2^-21. If `impulse << 21` would overflow, the divisor gives up the missing bits.
             let room = impulse.unsigned_abs().leading_zeros().saturating_sub(1).min(21);
             let du = saturate_wide(div_round(impulse << room, over >> (21 - room)));
             self.spin = self.spin.saturating_add(Speed::from_bits(saturate(du)));
@@ -366,8 +366,8 @@ impl Body {
         self.clamp_velocity();
     }
 
-    /// Changes of `v` and `u` by the applied force and torque in one of `rate` sub-steps per second: `dv = F / (m
-    /// rate)`, `du = torque / (m k rate)`. `dv` is in units of [`Speed`] and may exceed the range of that format.
+    /// Changes of `v` and `u` in a sub-step of `1 / rate` s by the applied force and torque: `dv = F / (m rate)`,
+    /// `du = torque / (m k rate)`. `dv` is in raw units of [`Speed`] and may exceed the range of that format.
     pub(crate) fn acceleration_step(&self, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force, self.torque, rate)
     }
@@ -390,7 +390,7 @@ fn divide(a: Fx, b: Fx) -> Fx {
     crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
 }
 
-/// `force / (mass rate)` in units of [`Speed`], rounded to nearest. 0 if the mass is 0.
+/// `force / (mass rate)` in raw units of [`Speed`], rounded to nearest. 0 if the mass is 0.
 fn over_mass(force: Fx, mass: Fx, rate: u32) -> i64 {
     if force == Fx::ZERO || mass == Fx::ZERO {
         return 0;

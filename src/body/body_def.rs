@@ -31,9 +31,9 @@ pub enum BodyKind {
     #[doc(alias = "static")]
     #[doc(alias = "StaticBody")]
     Fixed,
-    /// Moves with its velocity, which forces and contacts do not change: lifts and doors.
+    /// Moves with its velocity, which forces, contacts and joints do not change: lifts and doors.
     Kinematic,
-    /// Forces, contacts and joints move it.
+    /// Moves with a velocity that forces, contacts and joints change.
     Dynamic,
 }
 
@@ -191,7 +191,7 @@ impl BodyDef {
         self
     }
 
-    /// Sets which bodies this body is swept against.
+    /// Sets the kinds of bodies against which this body is swept: see [`Continuous`].
     #[must_use]
     pub const fn continuous(mut self, continuous: Continuous) -> Self {
         self.settings.continuous = continuous;
@@ -224,8 +224,8 @@ impl BodyDef {
         self
     }
 
-    /// Starts the body asleep and at rest. A sensor that is at rest and already exists does not detect the body until
-    /// the body wakes.
+    /// Starts the body asleep and at rest. Until the body wakes, a sensor that existed before and is at rest does not
+    /// detect it.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;

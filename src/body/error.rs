@@ -158,7 +158,8 @@ pub enum WorldError {
         /// Largest distance allowed, in metres.
         max: Fx,
     },
-    /// A speed, or an angular velocity in rad/s times the radius of gyration, exceeds the limit of the world.
+    /// A speed exceeds the limit of the world. The limit also applies to an angular velocity in rad/s times the radius
+    /// of gyration in metres.
     SpeedOutOfRange {
         /// Speed in m/s.
         value: Fx,
@@ -198,7 +199,7 @@ pub enum WorldError {
     },
     /// A damping rate is not within 0 to 1000 per second.
     DampingOutOfRange {
-        /// The requested rate.
+        /// The requested rate, per second.
         value: Fx,
     },
     /// A gravity scale is not within ±1000.
@@ -210,7 +211,7 @@ pub enum WorldError {
     AreaOutOfRange {
         /// Name of the property, such as "flow".
         what: &'static str,
-        /// The value, or the component of a vector that is out of range.
+        /// The value that is out of range. For a vector, the component that is out of range.
         value: Fx,
         /// Smallest value allowed.
         min: Fx,
@@ -232,11 +233,11 @@ pub enum WorldError {
         /// Name of the part.
         what: &'static str,
     },
-    /// A number of a joint is out of range.
+    /// A numeric parameter of a joint is out of range.
     JointOutOfRange {
-        /// Name of the number, such as "motor speed".
+        /// Name of the parameter, such as "motor speed".
         what: &'static str,
-        /// The number.
+        /// The value.
         value: Fx,
         /// Smallest value allowed. [`Fx::MIN`] means no limit, [`Fx::DELTA`] any value above 0.
         min: Fx,
@@ -272,11 +273,11 @@ pub enum WorldError {
         /// Largest value allowed.
         max: u32,
     },
-    /// A number of an explosion is out of range.
+    /// A numeric parameter of an explosion is out of range.
     ExplosionOutOfRange {
-        /// Name of the number.
+        /// Name of the parameter.
         what: &'static str,
-        /// The number.
+        /// The value.
         value: Fx,
         /// Smallest value allowed.
         min: Fx,

@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 pub struct EventSwitches {
     /// Begin and end of contacts. A pair reports them if either shape enables them.
     pub contact: bool,
-    /// Hits: contacts after an approach at [`crate::world::Config::hit_speed`] or faster. A pair reports them if either
-    /// shape enables them.
+    /// Hits: contacts of shapes that approach each other at [`crate::world::Config::hit_speed`] or faster. A pair
+    /// reports them if either shape enables them.
     pub hit: bool,
     /// Detection of this shape by sensors.
     #[doc(alias = "trigger")]

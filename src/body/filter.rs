@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// it is negative. For other pairs, each shape's mask must include a category of the other shape.
 ///
 /// A large set of shapes that do not collide with each other, such as bullets, costs the broad phase less if all shapes
-/// have the same group from -1 to -32 768. In group 0, a single common category that all masks exclude has the same
-/// effect.
+/// have the same group from -1 to -32 768. The cost is equally low if all shapes have group 0 and the same single
+/// category, and their masks exclude this category.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;
@@ -45,7 +45,7 @@ impl Filter {
         let Filter { category, mask, group } = *self;
         let class = match group {
             ..0 => i64::from(group),
-            // If two shapes with such filters have the same category, each mask excludes the other shape.
+            // Two shapes with this single category do not collide, because the mask of each excludes it.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };

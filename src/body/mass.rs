@@ -185,8 +185,8 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // Squares of lengths have 44 fraction bits. A mass has at most 63 bits, and so has the sum of k² and the
-        // squared distance from the centre.
+        // Squares of lengths have 44 fraction bits. The total mass has at most 63 bits, and so has, for each part, the
+        // sum of k² and the squared distance from the centre.
         let moment: i128 = parts
             .map(|part| {
                 let arm = part.centre - centre;
@@ -246,8 +246,8 @@ impl Part {
         }
     }
 
-    /// The capsule is a rectangle of `l` by `2 r`, and two half discs whose centres of mass are `4 r / (3 pi)` from its
-    /// ends:
+    /// The capsule consists of a rectangle of `l` by `2 r` and two half discs. The centre of mass of each half disc is
+    /// `4 r / (3 pi)` beyond an end of the rectangle:
     ///
     /// ```text
     /// A     = 2 r l + pi r^2

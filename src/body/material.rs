@@ -63,7 +63,7 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that a bounce returns, 0 to 1.5. The combined value of a pair is clamped to 2.
+    /// Ratio of the speed after a bounce to the approach speed, 0 to 1.5. The combined value of a pair is clamped to 2.
     /// Shapes that approach more slowly than [`Material::restitution_threshold`] do not bounce.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
@@ -75,11 +75,12 @@ pub struct Material {
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius. A pair uses the larger value and the larger radius. If the ground is round and has a larger
-    /// radius than the wheel, reduce the value in the ratio of the radii. A wheel with the radius `r` and the radius of
-    /// gyration `k` on level ground loses `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
+    /// radius than the wheel, multiply the value by the radius of the wheel and divide it by that of the ground. On
+    /// level ground, a wheel with the radius `r` and the radius of gyration `k` decelerates by `rolling_resistance g /
+    /// (1 + k^2 / r^2)`.
     pub rolling_resistance: Fx,
     /// Surface speed in m/s, clockwise around the shape, ±400: the upper side of a conveyor belt with a positive speed
-    /// carries bodies to the right. A pair uses the sum of its two shapes.
+    /// carries bodies to the right. A pair uses the sum of the speeds of its two shapes.
     pub surface_speed: Fx,
 }
 

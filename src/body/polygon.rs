@@ -161,7 +161,8 @@ impl Polygon {
         Self::new(&points)?.rounded(self.radius.into())
     }
 
-    /// Returns the polygon with the rounding radius `radius` in metres: the outline of the vertices, moved outwards.
+    /// Returns the polygon with the rounding radius `radius` in metres, which replaces an earlier one. The edges move
+    /// outwards by the radius, and the corners become arcs.
     ///
     /// # Errors
     /// If the radius is negative, or the outline leaves the range of ±110 m.
@@ -207,8 +208,8 @@ impl Polygon {
             if edge.widen().length() < EDGE_MIN {
                 return Err(GeometryError::ShortEdge { vertex: i as u64 });
             }
-            // Testing all other vertices also rejects stars that wind around twice. The test skips the ends of the edge
-            // by index, so it also rejects another vertex at the position of an end.
+            // All other vertices are tested, not only the next one, to reject stars that wind around twice. The ends of
+            // the edge are recognised by index, so that another vertex at the position of an end is rejected, too.
             let strictly_left = |(j, &other): (usize, &Vec2<Length>)| {
                 j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };

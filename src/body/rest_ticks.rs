@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// | kind | value |
 /// |---|---|
 /// | fixed | 0 |
-/// | kinematic | 1 from the first tick in which it is at rest until it moves or is woken by an edit; otherwise 0 |
-/// | dynamic | ticks since the last reset for which it has been slow enough to sleep, at most [`ticks_to_sleep`] |
+/// | kinematic | 1 after a tick at rest, until the body moves or an edit wakes it; otherwise 0 |
+/// | dynamic | ticks in which the body was slow enough to sleep, since the last reset; at most [`ticks_to_sleep`] |
 ///
 /// [`ticks_to_sleep`]: crate::world::Config::ticks_to_sleep
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -9,8 +9,8 @@ use crate::math::Fx;
 /// Locked degrees of freedom of a body.
 ///
 /// Contacts and joints treat a body with locked rotation as unable to rotate. They do not take a locked x or y axis
-/// into account: every sub-step clears the velocity along that axis after they have acted. A body that is pushed both
-/// along and across the axis therefore takes a few ticks to settle.
+/// into account: instead, every sub-step clears the velocity along that axis after contacts and joints have acted. A
+/// body that is pushed both along and across the locked axis therefore takes a few ticks to settle.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};

@@ -56,9 +56,9 @@ pub struct ShapeDef {
     /// the body's frame: 90 degrees for up.
     ///
     /// The platform is solid if the contact normal, from the platform to the other shape, is within 60 degrees of the
-    /// direction. Otherwise the other shape passes, and the pair does not touch. The other shape continues to pass
-    /// while the overlap along the direction is more than a quarter of the world's speculative distance (for small
-    /// shapes, a 32nd of the longer side of the smaller shape).
+    /// direction. Otherwise the other shape passes, and the pair does not touch. A shape that passes continues to pass
+    /// while the overlap along the direction exceeds a limit: a quarter of the world's speculative distance or, for
+    /// small shapes, a 32nd of the longer side of the smaller shape.
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
     /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors only if [`EventSwitches::detect_sensors`]
@@ -267,7 +267,7 @@ impl Shape {
         self.body
     }
 
-    /// Definition of the shape, with later changes.
+    /// Current definition of the shape, which includes changes since its creation.
     #[must_use]
     pub const fn def(&self) -> &ShapeDef {
         &self.def

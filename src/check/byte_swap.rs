@@ -19,8 +19,11 @@ use crate::lockstep::Game;
 /// Minimum interval in ticks between stored saves. Before the end of the first interval, the saves after 1, 2, 4, 8 and
 /// so on ticks are stored too.
 const INTERVAL: u64 = 16;
+/// Number of ticks after a save for which the changed state is played.
 const FUTURE: usize = 48;
+/// Number of recent saves whose bytes may replace those of an older save.
 const DONORS_MAX: usize = 6;
+/// Maximum number of swaps that are tried with each save.
 const TRIES_MAX: usize = 32;
 
 pub(super) struct ByteSwaps<G: Game> {
@@ -98,9 +101,9 @@ impl<G: Game> ByteSwaps<G> {
         Ok(())
     }
 
-    /// Plays two states with the same hash. Returns the number of ticks after which their hashes differ, and the saves
-    /// at the start. `None` if the hashes stay equal, or if the changed bytes are not the exact save of a state with
-    /// the same hash.
+    /// Plays the stored state and the changed state with the same inputs. Returns the number of ticks after which their
+    /// hashes differ, and the saves at the start. `None` if the hashes stay equal, or if the changed bytes are not the
+    /// exact save of a state with the stored hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,
@@ -112,7 +115,8 @@ impl<G: Game> ByteSwaps<G> {
         let Some((mut b, saved_b)) = loaded::<G>(changed, now)? else {
             return Ok(None);
         };
-        // If `load` corrects the changed bytes, they do not influence the future.
+        // `load` may have corrected the changed bytes. Then they do not influence the future, and the swap tests
+        // nothing.
         if b.state_hash() != moment.hash || codec::encode(&b.save()) != changed {
             return Ok(None);
         }
@@ -159,8 +163,8 @@ fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
-/// The possible swaps with the save `donor` of the same length: each byte that differs, and each run of differing
-/// bytes.
+/// The possible swaps with the save `donor`: each byte that differs, and each run of two or more differing bytes. None
+/// if the lengths differ.
 fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
     let mut found = Vec::new();
     if bytes.len() != donor.len() {

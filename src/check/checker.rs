@@ -44,7 +44,7 @@ pub struct Checked {
 /// # use lockstep2d::{body::BodyDef, world::Command};
 /// use lockstep2d::check::{Checker, CheckOptions};
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-/// // A bot decides by what it sees, so that its inputs are not known beforehand.
+/// // A bot decides by the current state, so its inputs are not known beforehand.
 /// let setup = SandboxSetup::default();
 /// let mut checker = Checker::<Sandbox>::new(&setup, &CheckOptions::default())?;
 /// while checker.tick() < 10 {

@@ -29,7 +29,7 @@ pub enum Fault {
     Hash,
     /// The hash agrees, but the digest of a phase of the physics step differs.
     Phase,
-    /// Loading a save leads to a state with another hash.
+    /// The state that was loaded from a save has another hash than the saved state.
     Loaded,
     /// Decoding a save and encoding it again gives different bytes.
     Encoding,
@@ -45,8 +45,8 @@ pub enum Fault {
         /// Reason given by the game.
         why: String,
     },
-    /// Two calls of `state_hash`, `work`, `claims` or `save` in succession return different results, or `claims`
-    /// differs between two runs.
+    /// Two calls in succession of `state_hash`, `work`, `claims` or `save` return different results, or the claims at
+    /// the end of two runs differ.
     Answers {
         /// Name of the function.
         of: &'static str,
@@ -59,14 +59,14 @@ pub enum Fault {
     Unrecordable(RecordError),
 }
 
-/// The predicted inputs that a game was played with before it was rolled back.
+/// The inputs with which a game plays some ticks before it is rolled back and plays them with the actual inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
     /// The actual inputs.
     Right,
     /// The default input for every player.
     Default,
-    /// The inputs of the tick before the rolled-back ticks, repeated in each of them.
+    /// In each rolled-back tick, the inputs of the last tick before the rolled-back ones.
     Held,
 }
 
@@ -97,7 +97,7 @@ pub struct Finding {
     pub variant: Variant,
     /// The fault.
     pub fault: Fault,
-    /// Number of ticks after which the fault exists.
+    /// Number of ticks after which the state has the fault.
     pub tick: u64,
     /// Number of ticks played when the fault was detected. May exceed `tick` for [`Variant::RolledBack`] and
     /// [`Variant::ByteSwapped`]. Includes a tick that exceeded a limit or could not be recorded.

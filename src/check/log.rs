@@ -67,7 +67,7 @@ pub(super) struct Logged<G: Game> {
 
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
-    // Opening the replay scans the file. Afterwards only the encoding of inputs can be wrong.
+    // Opening the replay checks the whole file, except the encoding of the inputs.
     let players = RawReplay::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;

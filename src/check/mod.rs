@@ -1,7 +1,7 @@
 //! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first fault.
 //!
 //! [`check`] plays the inputs of a [`Game`] in a reference run, and at the same time in the [`CheckOptions::variants`]:
-//! again from the start, reloaded at every tick, rolled back by 1 to 8 ticks, with cleared caches, on other thread
+//! once more in the same way, reloaded at every tick, rolled back by 1 to 8 ticks, with cleared caches, on other thread
 //! counts and so on. The variants must reach the state hashes of the reference run. Otherwise the result is a
 //! [`Failure`]: the variant, the tick, the fields that differ, and a minimised replay.
 //!

@@ -32,8 +32,8 @@ pub enum Variant {
     HashUnpolled,
     /// Every [`CheckOptions::every`] ticks, the state is encoded, decoded and loaded into a new game, which continues.
     Reloaded,
-    /// Every [`CheckOptions::every`] ticks, the game is rolled back by some ticks and plays them again, sometimes with
-    /// predicted inputs first.
+    /// Every [`CheckOptions::every`] ticks, the game is rolled back by some ticks and plays them again with the actual
+    /// inputs. Often it plays predicted inputs first, and is then rolled back once more.
     RolledBack,
     /// The caches of the world are cleared every [`CheckOptions::every`] ticks.
     ClearedScratch,
@@ -122,12 +122,14 @@ const SHORT_TICKS: u64 = 24;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// Each tick that [`CheckOptions::every`] selects tests the next combination of depth and prediction. For depths of
-    /// 1 to 8 ticks, this costs about eight steps per tick. In logs of at most 24 ticks, [`check`](super::check) and
-    /// [`check_replay`](super::check_replay) play all combinations, as with [`Depths::Each`].
+    /// Each tick that [`CheckOptions::every`] selects tests one combination of a depth and a [`Guess`](super::Guess),
+    /// in turn. For depths of 1 to 8 ticks, this costs about eight simulated ticks per tick. In logs of at most 24
+    /// ticks, [`check`](super::check) and [`check_replay`](super::check_replay) play all combinations, as with
+    /// [`Depths::Each`].
     #[default]
     InTurn,
-    /// All combinations at each of these ticks. For depths of 1 to 8 ticks, this costs 180 steps per tick.
+    /// Each tick that [`CheckOptions::every`] selects tests all combinations. For depths of 1 to 8 ticks, this costs
+    /// 180 simulated ticks per tick.
     Each,
 }
 

@@ -8,13 +8,13 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use crate::lockstep::{EncodedInputs, Game};
 use crate::math::Rng;
 
-/// Generates inputs for some players, tick by tick, from bytes. Any byte string gives a log, and a small change of the
-/// bytes usually causes a small change of the log.
+/// Generates inputs for `players` players, tick by tick, from bytes. Any byte string gives a log, and a small change of
+/// the bytes usually causes a small change of the log.
 ///
 /// The first byte of a tick decides whether all players repeat their inputs, for up to 16 ticks, or whether one player
-/// or all players get new inputs. The input's own `Deserialize` makes new inputs. Lists are short, and integers are
-/// often small or near the maximum or the middle of their range. If `Deserialize` fails, the default replaces the
-/// input. If the inputs of a tick cannot be encoded and decoded, the default replaces all of them.
+/// or all players get new inputs. The `Deserialize` of the input type makes new inputs from bytes. Lists are short, and
+/// integers are often small, or near the maximum or the middle of their range. If `Deserialize` fails, the default
+/// replaces the input. If the inputs of a tick cannot be encoded and decoded, the default replaces all of them.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };
@@ -37,7 +37,7 @@ pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Inpu
     log
 }
 
-/// Generates random inputs for some players and a number of ticks. The inputs follow from the state of `rng`.
+/// Generates random inputs for `players` players and `ticks` ticks. Equal states of `rng` give equal inputs.
 #[must_use]
 pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Vec<G::Input>> {
     let mut log = Vec::new();
@@ -84,17 +84,17 @@ impl Source<'_> {
         I::deserialize(self).unwrap_or_default()
     }
 
-    /// A number whose low `count` bits are used. With more than 8 bits, it is often small, or near the maximum or the
-    /// middle of the range.
+    /// A number of which the caller uses the low `count` bits. With more than 8 bits, it is often small, or near the
+    /// maximum or the middle of the range of an unsigned number.
     fn bits(&mut self, count: u32) -> u128 {
         if count <= 8 {
             return self.byte().into();
         }
         match self.byte() % 8 {
             0..=3 => self.byte().into(),
-            // A small negative number, if the type is signed.
+            // Near the maximum of an unsigned type, or a small negative number of a signed type.
             4 => !u128::from(self.byte()),
-            // A number near the limits of a signed type.
+            // Near the middle of the range of an unsigned type, or near a limit of a signed type.
             5 => (1u128 << (count - 1)).wrapping_add(u128::from(self.byte())).wrapping_sub(128),
             _ => (0..count / 8).fold(0, |bits, _| bits << 8 | u128::from(self.byte())),
         }

@@ -14,8 +14,8 @@ pub(crate) type Pair = (u32, u32);
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touched in the last tick. If one of the shapes is a sensor, whether the shapes overlapped at
-    /// the end of that tick.
+    /// Whether the shapes touched in the last tick. If one of them is a sensor: whether they overlapped at the end of
+    /// the last tick.
     pub(crate) touching: bool,
     /// Whether a one-way platform lets the other shape pass: see `one_way.rs`.
     pub(crate) passing: bool,
@@ -72,8 +72,9 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, each coordinate
-    /// of a lever arm that differs from its last value by at most `tolerances` (in metres) keeps that value.
+    /// Stores a manifold for the next ticks. If the previous manifold has the same points and does not belong to a time
+    /// of impact, small changes of the lever arms are ignored: a coordinate that changed by at most `tolerances` (in
+    /// metres) keeps its previous value.
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;

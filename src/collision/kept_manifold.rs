@@ -13,7 +13,7 @@ use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturat
 /// arms, columns of 100 boxes stand (`docs/DESIGN.md`). The separations follow from the poses, without the narrow
 /// phase.
 ///
-/// Lengths wrap around at 1024 m, so that differences are exact even if a fixed body's centre of mass is far away.
+/// Lengths are modulo 1024 m, so that differences are exact even if a fixed body's centre of mass is far away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
     /// Zero if there is no manifold, or if the manifold cannot be kept, for example because it belongs to a time of
@@ -38,8 +38,8 @@ const TURN_MAX: i32 = 1 << 26;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeptSide {
     pub(crate) pose: Pose,
-    /// Radius in metres of a circle that contains the shape, about the middle of the shape. 0 for a disc about the
-    /// body's centre of mass, because rotation does not change the disc.
+    /// Radius in metres of a circle that contains the shape and is centred at the middle of the shape. 0 for a disc
+    /// about the body's centre of mass, because rotation does not move its outline.
     pub(crate) reach: Length,
 }
 
@@ -144,8 +144,11 @@ impl KeptManifold {
     ///
     /// ```text
     /// d = change of between + thetaB x rB - thetaA x rA,   s' = s + n . d
-    /// |d|_1 + reachA |thetaA| + reachB |thetaB| <= limit
+    /// |d.x| + |d.y| + reachA |thetaA| + reachB |thetaB| <= limit
     /// ```
+    ///
+    /// `d` is the displacement of B relative to A at the point, `r` a lever arm, `theta` a rotation since the manifold
+    /// was computed, and `s` and `s'` are the stored and the new separation.
     #[inline]
     pub(crate) fn separations_at(
         &self,
@@ -158,7 +161,8 @@ impl KeptManifold {
         let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
         let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
         let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
-        // `d` has 52 fraction bits. `shift` is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
+        // `d` has 52 fraction bits. In raw units, coordinates of `shift` and of arms are at most 2^31, and rotations
+        // are below 2^27, so the sums are below 2^62.
         let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
         let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
         let mut separations = [Step::ZERO; 2];

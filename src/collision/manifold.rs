@@ -2,9 +2,9 @@
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, to carry over its accumulated impulse: the vertices of A and B that meet at
-/// the point. Identifiers that also encoded the clipping would change while a pile settles. Each change would lose a
-/// warm start, and the pile would sink (`docs/DESIGN.md`).
+/// Identifies a contact point across ticks, so that its accumulated impulse carries over. It consists of the two
+/// vertices of A and B that meet at the point. It does not encode how the edges were clipped: it would then change
+/// while a pile settles, each change would lose a warm start, and the pile would sink (`docs/DESIGN.md`).
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
@@ -39,7 +39,7 @@ impl Feature {
 /// A point where two shapes touch or are about to touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ManifoldPoint {
-    /// Position half-way between the surfaces, in metres from the manifold's origin, in world axes.
+    /// Position half-way between the surfaces, relative to the manifold's origin, in metres along the world's axes.
     pub anchor: Vec2<Length>,
     /// Distance between the surfaces along the normal in metres. Negative if they overlap.
     pub separation: Step,

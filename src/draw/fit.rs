@@ -24,7 +24,8 @@ const FIXED_SIZE_MAX: Fx = fx!(512);
 ///
 /// The window leaves out a body far away from all others, because this body would make the others too small to see. A
 /// large fixed shape contributes only its point nearest to the middle of the shown bodies. If no body can move, the
-/// window shows the fixed shapes of at most 512 m. The window moves with the bodies.
+/// window shows the fixed shapes of at most 512 m. The result changes as the bodies move. For a camera that does not
+/// move, keep the window of one tick.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -37,7 +38,7 @@ pub fn fit(world: &World) -> Aabb {
             .unwrap_or_default(),
     };
     let side = longest_side(window);
-    // The world is empty or a single point.
+    // A side of 0 means that the world is empty, or that there is only a single point to show.
     if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
 }
 

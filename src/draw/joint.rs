@@ -24,7 +24,8 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
     let (body_a, body_b) = joint.def().bodies();
     for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
-        // Many joints often share one fixed body. Lines to its centre would meet in a point far outside of the scene.
+        // A fixed body gets no line. Often many joints share one fixed body, and lines to its centre would meet in a
+        // point far outside of the scene.
         if let Some(body) = world.body(body).filter(|body| body.kind() != BodyKind::Fixed) {
             add(Style::JointArm, Form::Line { from: anchor, to: body.centre_of_mass() });
         }

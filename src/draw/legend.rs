@@ -7,7 +7,7 @@ use crate::hash::StateHash;
 use crate::math::Fx;
 use crate::world::World;
 
-/// The text of a picture of a world, except for its title.
+/// The text beside a picture of a world: figures, state hash and names of the colours. The title is not included.
 ///
 /// ```
 /// use lockstep2d::{draw::{Layers, Legend, primitives}, world::World};
@@ -22,7 +22,8 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Legend {
-    /// Tick, numbers of bodies and contacts, [`World::deepest_overlap`], [`World::widest_joint_gap`], and faults.
+    /// A line with the tick, the numbers of bodies and contacts, [`World::deepest_overlap`],
+    /// [`World::widest_joint_gap`], and the number of faults.
     pub figures: String,
     /// State hash of the world.
     pub hash: StateHash,

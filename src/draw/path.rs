@@ -11,7 +11,8 @@ pub(super) fn push(text: &mut String, arguments: Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Appends a form to path data, if it is visible. `direction_length` is the length of a [`Form::Direction`].
+/// Appends a form to path data, or the text element of a [`Form::Label`], if the form is visible. `direction_length` is
+/// the drawn length of a [`Form::Direction`].
 pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_length: Pixel) {
     match form {
         Form::Point(place) => add_point(path, *place, screen),

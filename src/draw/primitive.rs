@@ -29,7 +29,7 @@ pub struct Layers {
     pub contact_forces: bool,
     /// Contact points in the colours of the solver's graph colouring.
     pub solver_colours: bool,
-    /// Anchors of enabled joints, their errors, and lines to the bodies that they connect.
+    /// Enabled joints: their anchors, their errors, and lines to the bodies that they connect.
     pub joints: bool,
     /// Sizes of the joint errors, as text.
     pub joint_errors: bool,
@@ -66,7 +66,7 @@ impl Layers {
         }
     }
 
-    /// Each layer with its field name, in the order of menus.
+    /// Each layer with its field name, in the order in which a menu lists the layers.
     #[must_use]
     pub fn named(&mut self) -> [(&'static str, &mut bool); 13] {
         [
@@ -200,9 +200,9 @@ pub enum Style {
     ContactNormal(ContactProximity),
     /// A contact point.
     ContactPoint(ContactProximity),
-    /// The normal force at a contact point on shape B. The length is `0.2 m sqrt(a / 10 m/s²)`, where `a` is the
-    /// relative acceleration that the force gives to the centres of mass: 0.2 m for a ball at rest under a gravity of
-    /// 10 m/s². The root keeps large forces in the picture.
+    /// The normal force on shape B at a contact point, as a line. The length is `0.2 m sqrt(a / 10 m/s²)`, where `a` is
+    /// the relative acceleration that the force gives to the centres of mass: 0.2 m for a ball at rest under a gravity
+    /// of 10 m/s². The square root keeps the lines of large forces inside the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,

@@ -126,7 +126,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Adds the outlines of all islands. The colour of an island depends on its first body.
+/// Adds the outlines of all islands. The colour of an island depends on the slot index of its first body.
 fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };

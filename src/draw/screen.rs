@@ -91,7 +91,8 @@ impl Screen {
         let borders = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
         let crossings = borders.filter_map(|(start, end)| segment_intersection(from, to, start, end));
         let ends = [from, to].into_iter().filter(|&end| self.seen.contains_point(end));
-        // A line through a corner crosses two borders at the same point.
+        // A line through a corner crosses two borders at the same point, so the second end is the point farthest from
+        // the first one.
         let mut points = ends.chain(crossings);
         let first = points.next()?;
         Some((first, points.max_by_key(|&point| first.distance(point))?))

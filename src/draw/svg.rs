@@ -1,6 +1,6 @@
 //! Draws a tick as an SVG document.
 //!
-//! The outlines of a body have its id and its name as a tooltip. The lines and points of each other style share one
+//! The outlines of a body have its id and its name as a tooltip. In every other style, all lines and points share one
 //! path, so that a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that an enlarged
 //! picture in a browser shows exactly where two shapes touch.
 
@@ -67,12 +67,12 @@ pub fn svg(world: &World, view: &View) -> String {
 
 /// Size of marks, smaller for small bodies.
 struct Marks {
-    /// Mean half extent, in hundredths of a pixel, of the fat boxes of shapes that can move, clamped.
+    /// Mean half extent of the fat boxes of shapes that can move, in hundredths of a pixel, clamped to 400 to 2400.
     body: i64,
 }
 
 impl Marks {
-    /// Half extent from which marks have their maximum size.
+    /// Half extent, in hundredths of a pixel, from which marks have their maximum size.
     const BODY_LARGE: i64 = 2400;
 
     fn of(world: &World, screen: &Screen) -> Self {

@@ -12,7 +12,8 @@ pub(super) struct Decimal {
 impl Decimal {
     /// Returns `None` if the computation exceeds 128 bits.
     pub(super) fn new(bits: i128, fraction_bits: u32) -> Option<Self> {
-        // A bit is worth log10(2) decimal digits, slightly less than 4/13. The additional digit keeps neighbours apart.
+        // A bit is worth log10(2) decimal digits, slightly less than 4/13. The additional digit gives neighbouring
+        // numbers different texts.
         let digits = fraction_bits * 4 / 13 + u32::from(fraction_bits > 0);
         let scale = 10u128.checked_pow(digits)?;
         let one = 1u128.checked_shl(fraction_bits)?;

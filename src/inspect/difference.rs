@@ -81,7 +81,8 @@ pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     found
 }
 
-/// A path, and the number of earlier fields with the same path, because a map may have two keys with the same text.
+/// Identifies a field of a list: its path, and the number of earlier fields with the same path. A map may have two keys
+/// with the same text, which give equal paths.
 type FieldPosition<'a> = (&'a str, u32);
 
 fn positions(fields: &[Field]) -> Vec<FieldPosition<'_>> {

@@ -1,7 +1,7 @@
 //! Converts any value to a list of named fields, and compares two such lists.
 //!
 //! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and an exact [`Value`]. Any type that implements
-//! `Serialize` can be inspected, by its human-readable serialization.
+//! `Serialize` can be inspected: the fields are those of its human-readable serialization.
 //!
 //! ```
 //! use lockstep2d::{fx, inspect::{differences, fields}, math::Vec2};
@@ -37,7 +37,7 @@ pub const DEPTH_MAX: u32 = 128;
 /// The fields of a value, in serialization order.
 ///
 /// An `Option` results in the fields of its value, or in a field with the value `none`. An enum variant results in a
-/// field with its name, followed by its own fields. An empty list or map results in one field.
+/// field with its name, followed by its own fields. An empty list or map results in one field with [`Value::Empty`].
 ///
 /// # Errors
 /// [`InspectError`] if the value's `Serialize` returns an error or the value is nested deeper than [`DEPTH_MAX`].

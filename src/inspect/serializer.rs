@@ -87,7 +87,7 @@ impl Collector {
         self.within(|path| path.push_str(&format!("[{at}]")), value)
     }
 
-    /// Adds an entry of a map. The entries of the outermost map are the objects of a report.
+    /// Adds an entry of a map. An entry of the outermost map is the [`Field::subject`] of the fields in it.
     pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
         let (outer, section) = (self.subject, self.path.len());
         let length = section + usize::from(section > 0) + key.len();
@@ -97,7 +97,8 @@ impl Collector {
         result
     }
 
-    /// Converts a map key to text: the values of its fields, separated by commas. The key counts as nested in the map.
+    /// Converts a map key to text: the values of its fields, separated by commas. The nesting depth of the map counts
+    /// towards the depth of the key.
     pub(super) fn key<T: Serialize + ?Sized>(&self, key: &T) -> Result<String, InspectError> {
         let mut collector = Collector { depth: self.depth, ..Collector::default() };
         collector.nested(key)?;
@@ -108,8 +109,9 @@ impl Collector {
         Ok(parts.collect::<Vec<_>>().join(", "))
     }
 
-    /// Replaces the field with the bits of a fixed-point number by a field with the number. Leaves numbers of more than
-    /// 127 bits, and other structs whose name begins with `FixedI` or `FixedU`, as they are.
+    /// Replaces the last field, which has the bits of a fixed-point number, by a field with the number. `before` is the
+    /// number of fields before it. Leaves numbers of more than 127 bits, and other structs whose name begins with
+    /// `FixedI` or `FixedU`, as they are.
     pub(super) fn join_fixed(&mut self, before: usize, fraction_bits: Option<u32>) {
         if let [Field { value, path, .. }] = &mut self.fields[before..]
             && let Some(bits) = value.bits()
@@ -131,8 +133,8 @@ impl Collector {
         result
     }
 
-    /// Number of fraction bits of a fixed-point number. The type name contains this number as binary digits, `B1` and
-    /// `B0`.
+    /// Number of fraction bits of the current value, if its type is one of the crate `fixed`. The type name contains
+    /// this number as binary digits, `B1` and `B0`.
     pub(super) fn fraction_bits(&self) -> Option<u32> {
         let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;
         let digits = name.split(|c: char| !c.is_alphanumeric()).filter_map(|word| match word {

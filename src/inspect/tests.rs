@@ -182,7 +182,8 @@ fn depth_is_limited() {
     }
 }
 
-/// Structs that look like fixed-point numbers, and keys of maps, count as levels. Each level is serialized once.
+/// A struct whose name begins like that of a fixed-point number, and a key of a map, count as levels of nesting. Each
+/// level is serialized once.
 #[test]
 fn depth_is_limited_in_structs_and_keys_of_every_name() {
     #[derive(Serialize)]

@@ -42,7 +42,7 @@ pub enum Value {
     Text(String),
     /// Bytes.
     Bytes(Vec<u8>),
-    /// The name of a variant, `none` or `some none`.
+    /// The name of a variant. `none` stands for `None`, and `some none` for `Some(None)`.
     Name(&'static str),
     /// A list, map or struct without parts, or a unit.
     Empty,

@@ -171,7 +171,7 @@ pub trait Game: Sized {
     fn players(&self) -> u32;
 
     /// Ticks per second, constant. A game that steps its world once per tick returns the world's
-    /// [`Config::tick_rate`](crate::world::Config::tick_rate). [`check`](crate::check) does not detect another rate.
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). [`check`](crate::check) does not detect a wrong rate.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick, with one input for each player, in player order.
@@ -188,8 +188,8 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// An upper bound of the work units of the next tick, without the work that the world counts during the step. This
-    /// bound limits the computing time of an untrusted file. [`World::work`] is the bound of a world.
+    /// An upper bound of the work units of the next tick, without the work that the world counts during the step. A
+    /// verifier uses the bound to limit the computing time of an untrusted file. For a world, use [`World::work`].
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
     /// Input of a seat without a player: before a player has joined, and after the player has left. To distinguish

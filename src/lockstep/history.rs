@@ -54,7 +54,7 @@ pub struct History<G: Game> {
 }
 
 impl<G: Game> History<G> {
-    /// Creates a history of at least two seconds, if rollbacks repeat at most 16 ticks.
+    /// Creates a history of two seconds and 16 ticks. At least two seconds remain after a rollback of up to 16 ticks.
     #[must_use]
     pub fn new(game: &G) -> Self {
         Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
@@ -92,7 +92,7 @@ impl<G: Game> History<G> {
         self.ticks.get(index).filter(|past| past.tick == tick)
     }
 
-    /// Removes the entries after `tick`.
+    /// Removes the entries of ticks later than `tick`.
     pub fn truncate(&mut self, tick: u64) {
         self.ticks.truncate(self.ticks.partition_point(|past| past.tick <= tick));
     }
@@ -102,13 +102,13 @@ impl<G: Game> History<G> {
         self.ticks.iter()
     }
 
-    /// The first tick kept.
+    /// Tick of the oldest entry; `None` if there are no entries.
     #[must_use]
     pub fn oldest(&self) -> Option<u64> {
         self.ticks.front().map(|past| past.tick)
     }
 
-    /// The last tick kept.
+    /// Tick of the newest entry; `None` if there are no entries.
     #[must_use]
     pub fn newest(&self) -> Option<u64> {
         self.ticks.back().map(|past| past.tick)

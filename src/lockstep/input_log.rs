@@ -172,7 +172,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.last().map_or(0, |run| run.end)
     }
 
-    /// Number of runs of ticks with equal inputs.
+    /// Number of runs: sequences of consecutive ticks with equal inputs, which are stored once.
     #[must_use]
     pub fn runs(&self) -> usize {
         self.runs.len()

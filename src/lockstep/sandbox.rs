@@ -146,7 +146,7 @@ impl Game for Sandbox {
     fn step(&mut self, inputs: &[Vec<Command>]) {
         let tick_rate = self.world.config().tick_rate;
         for command in inputs.iter().flatten() {
-            // The tick rate of a game is constant.
+            // A command that would change the tick rate is refused, because the tick rate of a game is constant.
             let is_constant = match command {
                 Command::SetConfig { config } => config.tick_rate == tick_rate,
                 _ => true,
@@ -154,8 +154,8 @@ impl Game for Sandbox {
             if !is_constant || self.world.execute(command).is_err() {
                 self.refused = self.refused.saturating_add(1);
             }
-            // The verifier discards the state of an exhausted world. Stops here, because further commands could take
-            // any time.
+            // Stops if the work budget is exhausted, because further commands could take any time. The verifier
+            // discards the state.
             if self.world.is_work_exhausted() {
                 return;
             }
@@ -184,8 +184,8 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// The bound of [`World::work`], including the objects that the commands add, plus the work of the commands. The
-    /// world counts the work that is known only during the tick.
+    /// The bound of [`World::work`], including the objects that the commands add, plus the work of the commands. Work
+    /// that is known only during the tick is not included, because the world counts it.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

@@ -15,7 +15,8 @@ use super::vec2::Vec2;
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
 /// 2 pi.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);
-/// Radians in a degree. A product with this constant multiplies its rounding error: prefer [`Angle::from_degrees`].
+/// Radians in a degree. A product with this constant also multiplies the rounding error of the constant: prefer
+/// [`Angle::from_degrees`].
 pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 
 /// An angle, counter-clockwise, as a fraction of a turn. Sums and differences wrap.
@@ -82,7 +83,8 @@ impl Angle {
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a 127-bit product shifted by 66")]
     pub const fn from_radians(radians: Fx) -> Self {
-        /// 1 / (2 pi) in units of 2^-66, with an error below 1/16 of a result unit even for 2^31 rad.
+        /// 1 / (2 pi) in units of 2^-66. The rounding error of this constant changes the angle by less than 1/16 unit,
+        /// even for 2^31 rad.
         const TURNS: i128 = 11_743_562_013_128_004_906;
         Angle(low_bits(round_shift_wide(radians.to_bits() as i128 * TURNS, 66) as i64))
     }
@@ -264,8 +266,8 @@ mod tests {
             let angle = rng.angle();
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
-            // The error of sine and cosine across the direction is at most 0.71 units of 2^-32 turn. With 0.68 for
-            // `Angle::of`, the sum is below 2, so the difference, which is an integer, is at most 1.
+            // In units of 2^-32 turn, the errors of sine and cosine change the direction by at most 0.71, and the error
+            // of `Angle::of` is at most 0.68. The sum is below 2, so the difference, which is an integer, is at most 1.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

@@ -16,8 +16,8 @@ pub type Length = FixedI32<U22>;
 pub type Speed = FixedI32<U21>;
 /// Separation of a contact, or gap of a joint, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
-/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. The solver keeps it within ±16, so that
-/// differences fit.
+/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. The solver keeps displacements within ±16,
+/// so that differences of two displacements fit.
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;
@@ -33,7 +33,8 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Drops all but one of the `shift` bits before the addition, so that it can overflow only with a shift of 1.
+    // Drops all but one of the `shift` bits before the addition, so that the addition can overflow only with a shift of
+    // 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 

@@ -97,7 +97,7 @@ impl Mat2<Fx> {
     }
 }
 
-/// An entry in units of 2^-32 over a determinant in units of 2^-64.
+/// The quotient of an entry in units of 2^-32 and a determinant in units of 2^-64, rounded to nearest, saturated.
 const fn quotient(entry: i128, determinant: i128) -> Fx {
     Fx::from_bits(saturate_wide(div_round(entry.saturating_mul(1 << 64), determinant)))
 }
@@ -119,8 +119,9 @@ mod tests {
             if m.determinant().abs() < fx!(0.5) {
                 continue;
             }
-            // An error of half a unit in the inverse is multiplied by |M v| <= 128, and an error of half a unit in M v
-            // by entries <= 16.
+            // The errors of two entries of the inverse (half a unit each) are multiplied by components of M v, at most
+            // 128. The errors of two components of M v (half a unit each) are multiplied by entries of the inverse, at
+            // most 16. With half a unit for the last rounding, the sum is below 145.
             let there = m.inverse().unwrap().apply(m.apply(v)) - v;
             assert!(
                 there.x.abs().to_bits() <= 145 && there.y.abs().to_bits() <= 145,
@@ -153,7 +154,8 @@ mod tests {
             let v: Vec2<Unit> = Vec2::new(entry(), entry());
             let wide =
                 Mat2::new(Fx::from_num(m.a11), Fx::from_num(m.a12), Fx::from_num(m.a21), Fx::from_num(m.a22));
-            // In units of `Fx`, the errors are at most 2 and 0.5. The difference is an integer, so it is at most 2.
+            // In units of `Fx`, the rounding error is at most 2 for the product in `U30` and 0.5 for the product in
+            // `Fx`. The difference is an integer, so it is at most 2.
             let apart = m.apply::<_, U30>(v).widen() - wide.apply(v.widen());
             assert!(apart.x.abs().to_bits() <= 2 && apart.y.abs().to_bits() <= 2, "{apart:?}");
             let determinant: Unit = m.determinant();

@@ -66,7 +66,8 @@ impl Rng {
     pub const fn below(&mut self, bound: u32) -> u32 {
         let mut product = self.next_u32() as u64 * bound as u64;
         if low_half(product) < bound {
-            // Rejects the `2^32 mod bound` lowest values, because they would make some results likelier than others.
+            // Rejects products whose lower half is below `2^32 mod bound`. With these products, some results would be
+            // likelier than others.
             let unfair = bound.wrapping_neg() % bound;
             while low_half(product) < unfair {
                 product = self.next_u32() as u64 * bound as u64;

@@ -58,7 +58,7 @@ impl Vec2<Fx> {
         x.max(y) > limit || (x.saturating_add(y) > limit && self.length() > limit)
     }
 
-    /// Square of the length, rounded to nearest; saturates from 46 341 m.
+    /// Square of the length, rounded to nearest; saturates for lengths of 46 341 m or more.
     #[inline]
     #[must_use]
     pub const fn length_squared(self) -> Fx {
@@ -157,8 +157,8 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // The root of m = n 2^shift is m / sqrt(m). The error of the inverse (0.51) and the rounding error (one half) leave
-    // `root` at most one away from the nearest integer to the root.
+    // The root of m = n 2^shift is m / sqrt(m). Because of the error of the inverse (0.51) and the rounding error (one
+    // half), `root` may differ by one from `sqrt(n)` rounded to nearest.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
@@ -176,7 +176,8 @@ const fn narrowed(x: i64) -> Option<i32> {
     if low as i64 == x { Some(low) } else { None }
 }
 
-/// Converts a magnitude in units of 2^-63. If a rounding error makes the magnitude exceed 1, the result is 1.
+/// Converts a magnitude in units of 2^-63. If a rounding error makes the magnitude exceed 1, rounding to units of 2^-30
+/// makes it 1 again.
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
     let rounded = ((magnitude + (1 << 32)) >> 33) as i32;
@@ -243,8 +244,8 @@ const fn root_wide(n: u128) -> u128 {
     if n == 0 {
         return 0;
     }
-    // `m / sqrt(m)` gives 32 bits of the root `r`, and `(n - r^2) / (2 sqrt(n))` the next 31 bits. The loops correct
-    // the last unit.
+    // `m / sqrt(m)` gives the first 32 bits of the root, the number `r`. `(n - r^2) / (2 sqrt(n))` gives the next 31
+    // bits. The loops correct the last unit.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);
     let inverse = inverse_root(m); // 2^63 / sqrt(m)

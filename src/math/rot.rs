@@ -39,7 +39,7 @@ impl Rot {
         Rot { cos, sin }
     }
 
-    /// Creates the rotations by several angles. The loop is vectorised when inlined.
+    /// Creates the rotations by several angles. The compiler vectorises the loop where it inlines this function.
     #[inline(always)]
     pub(crate) fn from_angles<const N: usize>(angles: &[Angle; N]) -> [Self; N] {
         let mut rotations = [Rot::IDENTITY; N];

@@ -30,7 +30,7 @@ pub(super) const fn sine(angle: u32) -> i32 {
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
     /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48. In these units, each product fits 64 bits.
-    /// All but the last include half a unit, so that dropping bits rounds to nearest.
+    /// All coefficients but the last include half a unit, so that the shifts, which drop bits, round to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -65,7 +65,7 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     let spare = long.leading_zeros();
     let (short, long) =
         if spare == 0 { (short >> 1, long >> 1) } else { (short << (spare - 1), long << (spare - 1)) };
-    // Above 53/128, just under tan(1/16 turn), the angle is measured from the diagonal.
+    // For ratios above 53/128, which is just under tan(1/16 turn), the angle is measured from the diagonal.
     let from_diagonal = short > (long >> 7) * 53;
     let (numerator, denominator) = if from_diagonal { (long - short, long + short) } else { (short, long) };
 

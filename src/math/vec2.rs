@@ -210,7 +210,7 @@ impl Vec2<Fx> {
         Vec2::new(narrow(self.x), narrow(self.y))
     }
 
-    /// The vector, shortened so that no component exceeds `max`.
+    /// The vector, scaled down if necessary, so that the magnitude of no component exceeds `max`.
     pub(crate) fn shortened(self, max: Fx) -> Self {
         let largest = self.x.unsigned_abs().max(self.y.unsigned_abs()).to_bits();
         if largest <= max.unsigned_abs().to_bits() {

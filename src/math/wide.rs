@@ -126,7 +126,8 @@ pub(super) fn point_at(
             Ordering::Greater => floor + 1,
         };
         let bits = origin.to_bits();
-        // The result is between the ends of the segment. It is in range even if the offset has 64 bits.
+        // The result is between the ends of the segment, so it is in range. The offset may have 64 bits, but the
+        // wrapping operations still give the right result.
         Fx::from_bits(if part.negative {
             bits.wrapping_sub_unsigned(forward)
         } else {

@@ -56,9 +56,9 @@ pub enum PeerError {
         /// The requested seat.
         seat: u8,
     },
-    /// The parameters of the contact differ from those of this peer.
+    /// The participant that received the request to join has other parameters than this peer.
     Parameters(Vec<ParameterDifference>),
-    /// The contact refuses the request to join.
+    /// The participant that received the request to join refuses it.
     Refused {
         /// Reason of the refusal.
         why: &'static str,

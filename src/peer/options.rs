@@ -28,14 +28,14 @@ pub struct PeerOptions {
     pub delay: (u16, u16),
     /// Time after which the other peers continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
     pub patience: Duration,
-    /// Number of seats taken before the first tick: 0 to the number of players of the game. The value of the host
-    /// counts. Default: 2.
+    /// Number of seats that must be taken before the first tick: 0 to the number of players of the game. Only the value
+    /// of the host counts. Default: 2.
     pub start_with: u8,
     /// Number of own seats, at most the number of players. 0 makes a host a dedicated server; a joining player requests
     /// at least 1. Default: 1.
     pub seats: u8,
-    /// First own seat, to request certain seats. `first_seat` + `seats` is at most the number of players. Default:
-    /// `None`, any free seats.
+    /// First own seat. The peer requests this seat and the next ones, `seats` in total. `first_seat` + `seats` is at
+    /// most the number of players. Default: `None`, any free seats.
     pub first_seat: Option<u8>,
     /// Largest encoded input in bytes, 0 to 510, for inputs that differ in length: see [`codec`](crate::codec).
     /// Default: `None`, inputs are as long as the default input, which has at most 512 bytes.
@@ -146,7 +146,8 @@ pub struct PeerIdentity {
     pub secret: [u64; 2],
 }
 
-/// Random numbers of the operating system: the standard library exposes them as keys of its hash function.
+/// Random numbers: hashes of the numbers from 0. The keys of the standard library's hash function are random numbers of
+/// the operating system.
 #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
 pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
     use std::hash::{BuildHasher, RandomState};

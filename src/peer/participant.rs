@@ -80,7 +80,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Host)
     }
 
-    /// Joins a match as a player through any participant. The peer plays once it has caught up and seats are free.
+    /// Joins a match as a player. `contact` is the address of any participant. The peer plays once it has caught up and
+    /// seats are free.
     ///
     /// # Errors
     /// As [`Peer::host`].
@@ -96,7 +97,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Join(role, contact))
     }
 
-    /// Joins a match as a spectator through any participant.
+    /// Joins a match as a spectator. `contact` is the address of any participant.
     ///
     /// # Errors
     /// As [`Peer::host`].
@@ -142,8 +143,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// since a fixed moment.
     ///
     /// # Errors
-    /// [`PeerError`] if this peer cannot continue. Later updates still exchange packets, so that it can
-    /// [`leave`](Peer::leave). Until then, the other peers wait for it.
+    /// [`PeerError`] if this peer cannot continue. Later updates still exchange packets, so that this peer can
+    /// [`leave`](Peer::leave). The other peers wait for this peer until it has left.
     pub fn update(&mut self, now: Duration) -> Result<(), PeerError> {
         self.now = self.now.max(u64::try_from(now.as_micros()).unwrap_or(u64::MAX));
         for _ in 0..PACKETS_PER_UPDATE {
@@ -234,19 +235,21 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.failure.is_none() && self.endpoint.session().is_some_and(|session| session.is_due(self.now))
     }
 
-    /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
-    /// the inputs are ignored. Returns whether the inputs were issued. If not, the caller may pass them again.
+    /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. If this peer
+    /// has no seats, `inputs` is ignored. Returns whether the inputs were issued. If not, the caller may pass them
+    /// again.
     ///
-    /// Each call that returns `true` issues the inputs of one tick, so forget key presses after it. When the input
-    /// delay grows, [`is_due`](Peer::is_due) remains true: further calls issue inputs of additional ticks, and then the
-    /// next tick is played.
+    /// Each call that returns `true` issues the inputs of one tick. After such a call, clear the key presses collected
+    /// so far. When the input delay grows, [`is_due`](Peer::is_due) remains true: further calls issue inputs of
+    /// additional ticks, and then the next tick is played.
     ///
     /// # Errors
     /// [`PeerError`] if the number of inputs is not the number of own seats, if an input cannot be encoded, or if the
     /// game or its replay cannot continue, for example after an error of [`update`](Peer::update). If the inputs are
     /// not due yet, the result is `false` and no error.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
-        // If inputs were issued after a failure, the other peers would continue with a peer that plays no more.
+        // If this peer issued inputs after a failure, the other peers would play on, although this peer no longer
+        // plays.
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
@@ -339,8 +342,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         }
     }
 
-    /// Sends the request to join to this contact, for example if an earlier request was not answered. Discards a
-    /// session in progress and its events; the new session has another [`PeerId`].
+    /// Sends the request to join to the participant with this address, for example if an earlier request was not
+    /// answered. Discards a session in progress and its events; in the new session, this peer has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
         self.failure = None;
         self.events.clear();

@@ -22,7 +22,8 @@ pub const SEALED_OVERHEAD: usize = HEADER + TAG;
 const HEADER: usize = 16;
 const TAG: usize = 16;
 const WINDOW_WORDS: usize = 32;
-/// Length of a replay window. A packet is dropped if the newest packet of its sender is ahead by at least this number.
+/// Length of a replay window. A packet is dropped if its counter is at least this number below the newest counter of
+/// its sender.
 const WINDOW: u64 = 2048;
 /// Maximum number of senders with a replay window. For a further sender, the window of the sender that has been silent
 /// longest is removed.
@@ -30,10 +31,10 @@ const SENDERS_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
 ///
-/// Drops packets that were forged, changed or truncated, arrive again, or come back to their sender. Addresses and
-/// sizes are visible. A member of the match can pose as another member. Old packets are accepted again after a restart,
-/// and from senders whose replay window was removed. Old packets do no harm to a session, because its status records
-/// have versions.
+/// Drops packets that were forged, changed or truncated, that arrive a second time, or that come back to their sender.
+/// The addresses and sizes of packets are visible. A member of the match can pose as another member. Old packets are
+/// accepted again after a restart, and from senders whose replay window was removed. Old packets do no harm to a
+/// session, because its status records have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};

@@ -129,7 +129,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Records ticks that no rollback can change.
+    /// Commits ticks up to a total of `ticks`, which no rollback can change. If there is a replay, records them.
     fn commit(&mut self, ticks: Tick) -> Result<(), PeerError> {
         while self.committed < u64::from(ticks).min(self.tick) {
             let tick = self.committed;
@@ -143,7 +143,7 @@ impl<G: Game> Simulation<G> {
             }
             self.committed += 1;
         }
-        // Inputs since the oldest state are needed for the end of the replay and for reports.
+        // Drops inputs from before the oldest state. Later inputs are needed for the end of the replay and for reports.
         let oldest = self.history.oldest().unwrap_or(0).min(self.committed);
         while self.first_input < oldest {
             self.inputs.pop_front();
@@ -205,7 +205,8 @@ impl<G: Game> Simulation<G> {
         Ok((self.game, replay))
     }
 
-    /// Restores the state after a tick that has been played.
+    /// Restores the state after `tick` ticks, which have been played: loads the newest save up to there and plays the
+    /// rest again.
     fn play_to(&mut self, tick: u64) -> Result<(), PeerError> {
         if self.tick == tick {
             return Ok(());
@@ -225,8 +226,8 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. The report states for each of the two peers the seats that it had at the tick of
-    /// the desync, because it may have left them since.
+    /// Creates the report of a desync. The report states which seats the two peers had at the tick of the desync,
+    /// because a peer may have left its seats since then.
     pub(super) fn report(
         &mut self,
         desync: &PeerDesync,

@@ -45,8 +45,8 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest datagram of UDP. With a shorter buffer, a longer datagram would give an error on Windows, as a failed
-    /// socket does.
+    /// Largest datagram of UDP. If the buffer were shorter, a longer datagram would give an error on Windows, and
+    /// `receive` could not tell it from a failure of the socket.
     const DATAGRAM_MAX: usize = 1 << 16;
 
     /// A UDP socket.
@@ -140,8 +140,8 @@ mod udp {
                         return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
                     }
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
-                    // An earlier packet could not be delivered to its receiver. The system reports this error at the
-                    // next call.
+                    // The errors `ConnectionReset` and `ConnectionRefused` report, at the next call, that an earlier
+                    // packet could not be delivered to its receiver.
                     Err(error)
                         if matches!(
                             error.kind(),

@@ -1,4 +1,4 @@
-//! Encoding of the format's numbers: little-endian, and LEB128.
+//! Encoding of the format's numbers: little-endian with a fixed length, or LEB128.
 
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Creates a cursor over the part of the file that begins at `offset`.
+    /// Creates a cursor over `bytes`, the part of the file that begins at `offset`.
     pub(super) fn new(bytes: &'a [u8], offset: u64) -> Self {
         Cursor { rest: bytes, offset }
     }

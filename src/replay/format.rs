@@ -55,8 +55,8 @@ pub(super) const HASH_BYTES: usize = 16;
 
 /// Hash that a replay stores for a state.
 ///
-/// The hash covers the inputs so far and the state, because a changed input that the game ignores does not change the
-/// state hash.
+/// The hash covers the inputs so far and the state. The state hash alone would not reveal a changed input that the game
+/// ignores.
 #[must_use]
 pub fn checkpoint_hash(state: StateHash, inputs_digest: StateHash) -> StateHash {
     StateHash::of_digests([state, inputs_digest])

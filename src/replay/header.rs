@@ -51,7 +51,7 @@ pub(super) mod offset {
 #[derive(Clone, Debug)]
 pub(super) struct ReadHeader<'a> {
     pub(super) header: Header<'a>,
-    /// The checkpoint before the first tick.
+    /// The checkpoint hash before the first tick.
     pub(super) start: StateHash,
     pub(super) inputs_digest: StateHash,
     pub(super) chain: StateHash,
@@ -64,8 +64,8 @@ impl<'a> Header<'a> {
         offset::RULES_NAME + self.rules_name.len() as u64
     }
 
-    /// Encodes the header up to the start checkpoint. The hash of the start checkpoint covers these bytes. The caller
-    /// has checked the lengths.
+    /// Encodes the header up to the checkpoint hash before the first tick, which covers these bytes. The caller has
+    /// checked the lengths.
     pub(super) fn encode(&self) -> Vec<u8> {
         let Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup } =
             *self;

@@ -5,9 +5,10 @@ use super::reader::ReadError;
 
 /// Bounds on the size and computing time of a replay.
 ///
-/// The default allows a day at 60 Hz, and 20 000 million work units: a day with 150 bodies in contact, or some seven
-/// hours with 400 (`docs/VERIFYING.md`). The verification of a file that was made to be slow takes up to about five and
-/// a half hours. A server for one game should set its own limits.
+/// The default allows a game of one day at 60 Hz and 20 000 million work units. This number of work units suffices for
+/// a day with 150 bodies in contact, or for about seven hours with 400 (`docs/VERIFYING.md`). Within the default
+/// limits, the verification of a file that was made to be slow takes up to about five and a half hours. A server for
+/// one game should set its own limits.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -25,16 +26,17 @@ pub struct Limits {
     pub players: u32,
     /// Size of a block's payload in bytes.
     pub block_bytes: u32,
-    /// Ticks between two checkpoints, and ticks in a run.
+    /// Ticks between two checkpoints. A run of equal inputs is not longer, because it ends with its block.
     pub block_ticks: u32,
     /// Ticks in the whole game.
     pub ticks: u64,
     /// Bodies in the world of the game ([`Game::world`](crate::lockstep::Game::world)), checked at the start and after
     /// every tick. Between these checks, `setup_bytes` and `tick_work` bound the number of bodies.
     pub bodies: u64,
-    /// Work units of one tick, counted by [`Game::work`](crate::lockstep::Game::work) and by the world during the tick.
+    /// Work units of one tick: those of [`Game::work`](crate::lockstep::Game::work), plus those that the world counts
+    /// during the tick.
     pub tick_work: u64,
-    /// Work units of the whole game, with its setup.
+    /// Work units of the whole game, including its setup.
     pub total_work: u64,
 }
 

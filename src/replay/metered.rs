@@ -36,8 +36,8 @@ pub fn play_within<G: Game, T>(
         world.start_work_meter(room);
     }
     let done = step(game, inputs);
-    // The state of a world that has exhausted its work budget is wrong, so the limits are checked before the game is
-    // used.
+    // The state of a world that has exhausted its work budget is wrong. Therefore the limits are checked again, before
+    // the caller uses the game.
     let metered = game.world_mut().map_or(0, |world| world.stop_work_meter());
     let work = work.saturating_add(metered);
     *spent = before.saturating_add(work);

@@ -1,6 +1,7 @@
 //! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! The reader checks lengths, checksums, the chain, run lengths, the order of the blocks, and the trailer's counts.
+//! The reader checks lengths, checksums, the chain hash, the runs, the order of the blocks, and the number of ticks and
+//! the claims in the trailer.
 
 use core::fmt;
 
@@ -80,7 +81,7 @@ impl core::error::Error for ReadError {}
 /// ```
 #[derive(Clone, Debug)]
 pub enum Part<'a> {
-    /// The inputs of some ticks.
+    /// A block with the inputs of consecutive ticks.
     Inputs(InputBlock<'a>),
     /// The end of a complete file.
     Trailer(Trailer),
@@ -155,7 +156,7 @@ pub struct Reader<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     InputsOrTrailer,
-    /// The last block had fewer ticks than the interval, so no other block of inputs may follow.
+    /// The last block had fewer ticks than the checkpoint interval, so no other block of inputs may follow.
     Trailer,
     Nothing,
 }
@@ -328,7 +329,7 @@ struct Block<'a> {
     kind: u8,
     payload: &'a [u8],
     payload_offset: u64,
-    /// The chain including this block.
+    /// Chain hash of the file up to and including this block.
     chain: StateHash,
     end: usize,
 }

@@ -14,8 +14,9 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, InputError};
 
-/// Recommended checkpoint interval: one second at 60 Hz. A block takes 29 bytes besides its runs. A longer interval
-/// loses more ticks in a crash and locates a divergence less precisely.
+/// Recommended checkpoint interval: one second at 60 Hz. With a longer interval, a crash loses more ticks, and a
+/// divergence is located less precisely. With a shorter interval, the file is longer: each block takes 29 bytes in
+/// addition to its runs.
 pub const CHECKPOINT_INTERVAL: u32 = 60;
 
 const VARINT_BYTES_MAX: usize = 5;
@@ -71,7 +72,7 @@ pub enum RecordError {
     },
     /// The block is full, and [`Recorder::checkpoint`] was not called.
     CheckpointDue,
-    /// Two claims have one name, a name is empty or too long, or there are too many claims.
+    /// Two claims have the same name, a name is empty or too long, or there are too many claims.
     Claims,
 }
 
@@ -113,7 +114,7 @@ impl core::error::Error for RecordError {}
 /// Writes the replay of a game that the caller steps. [`Recording`](super::Recording) also steps the game.
 ///
 /// Append the bytes from [`Recorder::take_bytes`] to a file. They end with the header or a complete block, so the file
-/// is a prefix of a replay at any time. With rollback, record only confirmed ticks.
+/// is a prefix of a replay at any time. If the game uses rollback, record only confirmed ticks.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -159,7 +160,7 @@ impl<G: Game> Clone for Recorder<G> {
 impl<G: Game> Recorder<G> {
     /// Starts the game and its replay.
     ///
-    /// The game gets the setup as a verifier decodes it.
+    /// The setup is encoded, and the game starts from the decoded bytes, as it does when the replay is verified.
     ///
     /// # Errors
     /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
@@ -195,7 +196,8 @@ impl<G: Game> Recorder<G> {
         self.ticks
     }
 
-    /// Records the inputs of the next tick. Returns the inputs as a verifier decodes them, to step the game with.
+    /// Records the inputs of the next tick. Returns these inputs as they will be decoded when the replay is verified;
+    /// step the game with the returned inputs.
     ///
     /// # Errors
     /// [`RecordError`] if the inputs cannot be recorded. Do not play the tick.
@@ -251,7 +253,8 @@ impl<G: Game> Recorder<G> {
         self.block_ticks == self.checkpoint_interval
     }
 
-    /// If the block is full, finishes it. `state` is the state hash after its last tick.
+    /// Finishes the block if it is full; does nothing otherwise. `state` is the state hash after the last recorded
+    /// tick.
     pub fn checkpoint(&mut self, state: StateHash) {
         if self.is_checkpoint_due() {
             self.finish_block(state);
@@ -264,8 +267,9 @@ impl<G: Game> Recorder<G> {
         core::mem::take(&mut self.finished)
     }
 
-    /// Returns the bytes that have not been taken, with the current block finished by the checkpoint of this state.
-    /// Together with the taken bytes, they are a replay without a trailer. The recorder is unchanged.
+    /// Returns the bytes that have not been taken, followed by the current block, which ends with a checkpoint of
+    /// `state`. All bytes taken so far and the returned bytes together are a replay without a trailer. The recorder is
+    /// unchanged.
     #[must_use]
     pub fn so_far(&self, state: StateHash) -> Vec<u8> {
         let mut copy = self.clone();

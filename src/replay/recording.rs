@@ -46,7 +46,7 @@ impl<G: Game> Recording<G> {
         self.recorder.ticks()
     }
 
-    /// Plays one tick with the inputs as a verifier decodes them.
+    /// Records one tick and plays it. The game gets the inputs as they will be decoded when the replay is verified.
     ///
     /// # Errors
     /// [`RecordError`] if the inputs cannot be recorded. The tick is not played.

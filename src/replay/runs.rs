@@ -14,7 +14,7 @@ use super::reader::ReadError;
 /// # let file = recording.finish().expect("no claims");
 /// let mut reader = Reader::open(&file, &Limits::default())?;
 /// let Some(Part::Inputs(block)) = reader.next_part()? else { panic!("a block") };
-/// // All ticks of a block without a pressed button are one run of a few bytes.
+/// // If no button is pressed in a block, all its ticks are one run of a few bytes.
 /// let mut runs: Runs = block.runs();
 /// let run: Run = runs.next_run()?.expect("a block is not empty");
 /// assert_eq!(run.ticks, 45);

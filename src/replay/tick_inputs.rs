@@ -63,7 +63,8 @@ impl<'a> TickInputs<'a> {
         }
     }
 
-    /// The block whose last tick was just read, with the checkpoint after that tick.
+    /// The block that ends with the tick that was just read, with the checkpoint after that tick. `None` if that tick
+    /// is not the last of its block.
     #[must_use]
     pub fn finished_block(&self) -> Option<&InputBlock<'a>> {
         self.block.as_ref().filter(|_| self.block_left == 0)

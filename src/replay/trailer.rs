@@ -9,7 +9,7 @@ use super::reader::ReadError;
 use super::verdict::ClaimDifference;
 use crate::hash::StateHash;
 
-/// Statements of a file about the end of the game.
+/// The last block of a complete file: what the file states about the end of the game.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -37,11 +37,12 @@ pub struct Trailer {
 }
 
 impl Trailer {
-    /// Returns the first difference to the end of a game: the final hash, or the first claim by name.
+    /// Compares the trailer with the final hash and the claims of a game. Returns the first difference: the hash, or
+    /// else the first differing claim in the order of the names.
     #[must_use]
     pub fn difference(&self, hash: StateHash, claims: &[(String, i64)]) -> Option<ClaimDifference> {
-        // The last checkpoint covers this state and agrees, so a different hash means that the trailer is wrong, and
-        // not that the game has diverged.
+        // The caller has already compared the last checkpoint, which covers this state. A different hash therefore
+        // means that the trailer is wrong, and not that the game has diverged.
         if self.final_hash != hash {
             return Some(ClaimDifference::FinalHash { claimed: self.final_hash, actual: hash });
         }

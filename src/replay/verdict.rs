@@ -60,7 +60,7 @@ pub enum Verdict {
     LimitExceeded {
         /// The limit.
         limit: LimitKind,
-        /// Value in the file, or a lower bound of it.
+        /// Value found. For work, this may be a lower bound, because the count stops when it exceeds the limit.
         value: u64,
         /// Maximum allowed value.
         max: u64,
@@ -100,7 +100,7 @@ pub enum ClaimDifference {
     },
     /// A claim differs.
     Value {
-        /// Name of the value.
+        /// Name of the claim.
         name: String,
         /// Value in the trailer; `None` if the trailer has no claim with this name.
         claimed: Option<i64>,

@@ -132,7 +132,8 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.ticks()
     }
 
-    /// The trailer, if the file is complete. The trailer is verified once the verdict is [`Verdict::Match`].
+    /// The trailer, if the file is complete. Its statements are verified only if [`conclude`](Self::conclude) returns
+    /// [`Verdict::Match`].
     #[must_use]
     pub fn trailer(&self) -> Option<&Trailer> {
         self.ending.trailer.as_ref()
@@ -154,7 +155,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         result
     }
 
-    /// Returns the verdict, which is at best `Incomplete` before all ticks have been played.
+    /// Returns the verdict. Before all ticks have been played, this is `Incomplete`, or the verdict of a failed step.
     #[must_use]
     pub fn conclude(self) -> Verdict {
         if let Some(verdict) = self.failed {
@@ -227,7 +228,7 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// Checks the number of bodies, which is 0 without a world.
+/// Checks the number of bodies against [`Limits::bodies`]. A game without a world has 0 bodies.
 pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
     let bodies = world_of(game).map_or(0, World::body_count);
     LimitKind::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)

@@ -8,15 +8,17 @@ use super::replayed::{self, Effort};
 use crate::lockstep::Game;
 use crate::replay::Limits;
 
-/// Finds the first tick at which two trajectories (sequences of states) differ, the stage of that tick, and the
-/// differences, with the probable origin first. The search costs about as much as playing all ticks two or three times.
+/// Finds the first tick at which two trajectories (sequences of states) differ, the stage of that tick in which they
+/// diverge, and the differences, with the probable origin first. The search costs about two or three times as much as
+/// playing all ticks once.
 ///
 /// Without `b`, the running engine simulates the inputs of `a`, and the states of this simulation are the second
-/// trajectory. If `a` is a replay, the result is the two checkpoints between which the trajectories diverge. To find
-/// the exact tick, `a` has to be a desync report, or a [`Trace`](super::Trace) by the engine that wrote the replay.
+/// trajectory. If `a` is a replay, the result is the pair of checkpoints between which the trajectories diverge. The
+/// exact tick can be found only if `a` is a desync report, or a report of a [`Trace`](super::Trace) by the engine that
+/// wrote the replay.
 ///
-/// With `b`, the files are recordings of a match on two machines, or any two replays. Two snapshots are compared
-/// without a simulation.
+/// With `b`, the files are reports or replays of one match from two machines, or any two replays. Two snapshots are
+/// compared without a simulation.
 ///
 /// # Errors
 /// [`CompareError`] if the files cannot be compared or played.

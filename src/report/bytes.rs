@@ -136,8 +136,8 @@ impl DesyncReport {
         ENVELOPE.seal(self.semantics, &self.body)
     }
 
-    /// Decodes a report of [`DesyncReport::to_bytes`], within the limit `file_bytes`. Does not check the saves and the
-    /// replay of the report.
+    /// Decodes a report that [`DesyncReport::to_bytes`] has encoded, if it is at most `limits.file_bytes` long. The
+    /// saves and the replay in the report are not decoded or checked.
     ///
     /// # Errors
     /// [`ReportError`] for other bytes, and for a report longer than the limit.

@@ -2,9 +2,9 @@
 //!
 //! A body with a wrong velocity affects the bodies that it touches in the same tick, so the body with the largest
 //! difference need not be the origin. Therefore the search restores the last correct state, flips a single bit in the
-//! speed or pose of a body that differs, and plays the tick. It starts with the bits whose value is closest to the
-//! observed difference. If no differing body is known, the search tries all bodies, after and before the tick. A flip
-//! that leads to exactly the wrong state is the explanation.
+//! speed or pose of one of the differing bodies, and plays the tick. It starts with the bits whose value is closest to
+//! the observed difference. If no differing body is known, the search tries the bits of all bodies, first in the state
+//! after the tick, then in the state before it. A flip that leads to exactly the wrong state is the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -23,7 +23,7 @@ use crate::world::BodyField;
 
 /// Maximum work units that [`compare`](super::compare::compare) spends on bit flips: about ten seconds.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Minimum charge for a step in work units. Loading and hashing a state is charged as half a step.
+/// Minimum work units that a step is charged with. Loading and hashing a state is charged with half of a step.
 const TRY_WORK: u64 = 1000;
 
 pub(super) struct WrongTick<G: Game> {
@@ -37,7 +37,7 @@ pub(super) struct WrongTick<G: Game> {
     pub(super) phases: Option<TickPhases>,
 }
 
-/// Groups differences by subject, sorted by the difference in motion, largest first.
+/// Groups differences by subject. The subject with the largest difference of velocities comes first.
 pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
     let mut places = BTreeMap::new();
@@ -55,7 +55,7 @@ pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     subjects
 }
 
-/// Difference of a body's velocities in units of the last bit; 0 for other subjects.
+/// Sum of the differences of a body's velocities, each in units of its last bit; 0 for a subject that is no body.
 fn disturbance(subject: &Subject) -> u128 {
     let is_motion = |difference: &&Difference| {
         BodyField::SPEEDS.iter().any(|field| difference.field().name() == field.name())
@@ -78,7 +78,8 @@ pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
 }
 
-/// Searches for the bit flip that explains the differences, and moves the body with that bit to the front.
+/// Searches for the bit flip that explains the differences, and moves the body with that bit to the front of
+/// `found.subjects`.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
@@ -160,7 +161,7 @@ fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
         let sizes = BodyField::ALL.map(|field| (field, size(field)));
         candidates.extend(Candidate::all_of(body, When::Before).map(|candidate| {
             let size = sizes.iter().find(|(field, _)| *field == candidate.field).and_then(|(_, size)| *size);
-            // Distance of the bit's value from the observed difference, as a base-2 logarithm times 256.
+            // 256 |log2(value of the bit / observed difference)|. Fields without a difference come last.
             (size.map_or(u32::MAX, |size| size.abs_diff(candidate.bit << 8)), candidate)
         }));
     }
@@ -186,9 +187,9 @@ fn loose_bodies<G: Game>(game: &mut G) -> Vec<BodyId> {
     loose.map(|(id, _)| id).collect()
 }
 
-/// Returns the first candidate that leads to the wrong state, within `work` units. If `candidates` is empty, tries the
-/// bits of all bodies, first after the tick, then before it. The body with the flipped bit may no longer differ: the
-/// step may have restored the body, so that only its contacts differ.
+/// Returns the first candidate that leads to the wrong state. Spends at most `work` units. If `candidates` is empty,
+/// tries the bits of all bodies, first after the tick, then before it. The body with the flipped bit need not be one of
+/// the bodies that differ: the step may have corrected this body, so that only its contacts differ.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,

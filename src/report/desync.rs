@@ -84,8 +84,8 @@ impl DesyncReport {
     /// Creates the report of a peer. `replay` has the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// The report has the hash of each known tick in the history, and the saves that fit into [`SAVES_BYTES_MAX`]:
-    /// first the saves up to the tick that differs, newest first, then the later saves.
+    /// The report has the hash of each known tick in the history, and as many saves as fit into [`SAVES_BYTES_MAX`].
+    /// Saves up to the tick that differs are added first, starting with the newest, then the later saves.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
@@ -144,19 +144,20 @@ impl DesyncReport {
         &self.body.seats
     }
 
-    /// The checkpoint with different states, as a number of ticks.
+    /// Number of ticks after which the states of the peers differ.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.body.tick
     }
 
-    /// The hash of the peer of each seat at [`DesyncReport::tick`], if known.
+    /// For each seat, the hash of its peer's state at [`DesyncReport::tick`], if known.
     #[must_use]
     pub fn hashes(&self) -> &[Option<StateHash>] {
         &self.body.hashes
     }
 
-    /// The seats that agree at [`DesyncReport::tick`], largest group first.
+    /// The seats, grouped by their peers' states at [`DesyncReport::tick`], largest group first. Seats without a known
+    /// hash are left out.
     #[must_use]
     pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();
@@ -189,7 +190,7 @@ impl DesyncReport {
         &self.body.phases
     }
 
-    /// Number of ticks in the history without a save, for lack of space.
+    /// Number of ticks in the history whose saves were left out for lack of space.
     #[must_use]
     pub fn saves_left_out(&self) -> usize {
         self.body.history.len().saturating_sub(self.body.saves.len())

@@ -87,8 +87,8 @@ impl Evidence {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said {
     hash: StateHash,
-    /// Digest of the inputs that `hash` covers together with the state, for a checkpoint. `None` if `hash` is a state
-    /// hash.
+    /// `None` if `hash` is a state hash. If `hash` is a checkpoint, the digest of the inputs, which a checkpoint covers
+    /// in addition to the state.
     inputs: Option<StateHash>,
 }
 
@@ -174,7 +174,8 @@ impl<'a> SideEvidence<'a> {
             return Some(a == b);
         }
         let (a, b) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
-        // Checkpoints with different input digests are incomparable, for example because of different intervals.
+        // Checkpoints with different input digests cannot be compared. The digests of equal inputs differ if, for
+        // example, the checkpoint intervals differ.
         (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 

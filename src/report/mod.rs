@@ -5,7 +5,7 @@
 //! takes two reports or replays and simulates their inputs again. A side whose states differ from this rerun has
 //! diverged.
 //!
-//! [`bisect`] also examines a single file against the running engine. A [`Trace`] has more data for this than a replay.
+//! [`bisect`] can also compare a single file with the running engine. A [`Trace`] has more data for this than a replay.
 //!
 //! Here *tick t* is the state after *t* ticks, and a *trajectory* is the sequence of states that one machine computed.
 

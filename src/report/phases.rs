@@ -27,9 +27,10 @@ pub const PHASE_DIGESTS_MAX: usize = 1024;
 pub struct TickPhases {
     /// For each step of the world: the digest at its start, then one after each phase. At most [`PHASE_DIGESTS_MAX`].
     pub digests: Vec<StateHash>,
-    /// The world at the start of its last step, as differences to the world's bytes after the previous tick.
+    /// The world at the start of its last step in this tick, stored as differences from its bytes after the previous
+    /// tick.
     start: Vec<Patch>,
-    /// Length in bytes of the world at the start of its last step.
+    /// Length in bytes of the world at the start of this step.
     start_length: u64,
 }
 

@@ -17,13 +17,13 @@ use crate::replay::{Limits, RawReplay, Step};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
-    /// fixed limit.
+    /// Plays all ticks for which either side has data, up to the first different input. The search for an explanation
+    /// has a fixed limit, [`candidate::WORK_MAX`].
     Thorough,
     /// Plays until all of these conditions hold: a side has diverged; no difference is suspected
-    /// ([`Beside::suspected`]); more ticks would bring no more states, because the states of both sides are available
-    /// or the file of the diverged side has no further save. The rerun and the search together take at most two and a
-    /// half times the work of all ticks.
+    /// ([`Beside::suspected`]); further ticks would provide no more states for the comparison, because the states of
+    /// both sides are available or the file of the diverged side has no further save. The rerun and the search together
+    /// take at most two and a half times the work of all ticks.
     Bounded,
 }
 
@@ -50,7 +50,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After the first different input, the states are expected to differ, so they are compared only up to it.
+    // The states are expected to differ after the first different input, so they are compared only up to this input.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -148,16 +148,16 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
-    /// A tick at which the sides may differ, and the side whose next hash decides. At this tick, one side is the first
-    /// to differ from the rerun. The other side has no hash for this tick and has not diverged before. If the next hash
-    /// of the other side equals the rerun, the sides differ at this tick, because a diverged side does not converge
-    /// again. Otherwise both sides may have diverged in the same way.
+    /// A tick at which only one side is known to differ from the rerun, for the first time. The other side, which is
+    /// given here, has not diverged before, and its file has no hash for this tick. Its next hash decides: if the hash
+    /// equals the rerun, the sides differ at this tick, because a diverged side does not converge again. Otherwise both
+    /// sides may have diverged in the same way.
     suspected: Option<(u64, Side)>,
     /// The states of both sides at the first different tick for which both are available.
     states: Option<States<G::Save>>,
     /// Like `states`, but the state of one side is presumed to be the state of the rerun.
     presumed: Option<States<G::Save>>,
-    /// Reason why states of an earlier tick could not be used.
+    /// Error message of the first save that could not be decoded.
     obstacle: Option<String>,
 }
 
@@ -187,7 +187,7 @@ impl<G: Game> Beside<'_, '_, G> {
         self.found.simulated = Some(self.raw.tick());
         let unsettled = self.suspected.map(|(tick, _)| tick).filter(|tick| equal < Some(*tick));
         self.found.first_different = self.found.first_different.or(unsettled);
-        // The hashes of the files may be equal at ticks after the end of the rerun.
+        // The hashes of the files may also be equal at ticks after the end of the rerun.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
         self.conclude()
@@ -323,7 +323,8 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // Searches for a flipped bit, unless the phases show which bit flipped before the step, or that none did.
+        // Searches for a flipped bit if phase digests are missing, or if the states diverged before the world's step
+        // and their differences at its start are unknown.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

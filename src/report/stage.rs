@@ -6,7 +6,8 @@ use crate::world::Phase;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Before the world's step. Causes are different inputs, the rules, code outside the rules, or a memory error.
+    /// Before the world's step. Possible causes are different inputs, the rules of the game, code outside the rules
+    /// that changes the state, or a memory error.
     BeforeStep,
     /// In a phase of the world's step.
     Phase(Phase),

@@ -171,7 +171,8 @@ impl<G: Game> Memory<G> {
 
     /// Upper bound of the length of a report without saves, in bytes.
     fn bytes_without_saves(&self, players: u32, replay: &[u8]) -> u64 {
-        // Envelope, name of the rules and other fields of fixed length.
+        // Upper bound of the length of the envelope, the name of the rules (at most 64 bytes) and all fields of fixed
+        // length.
         const FIXED: usize = 1024;
         // For each tick: its number, hash, and the number and length of its save.
         let history = 40 * self.history.iter().count();
@@ -205,7 +206,7 @@ pub enum TraceError {
     Record(RecordError),
     /// The report would exceed [`Limits::file_bytes`], even without saves.
     TooLong {
-        /// Upper bound of its length in bytes.
+        /// Upper bound of the report's length in bytes.
         bytes: u64,
         /// Maximum number of bytes.
         max: u64,

@@ -3,10 +3,10 @@
 //!
 //! When a voter sees a ballot higher than all that it has promised, it promises this ballot and freezes its
 //! acknowledgement (`progress.rs`). Once a quorum has promised the ballot, its proposer chooses the change
-//! (`proposal.rs`): the change that the promisers accepted in the highest ballot, or a new change if they accepted
-//! none. A voter accepts the change if it has promised no higher ballot and holds all inputs before the cut (see
-//! below). The change is decided once a quorum of the old view has accepted it in one ballot. Each peer that sees these
-//! acceptances installs the change.
+//! (`proposal.rs`). If promisers have already accepted changes, it must choose the one with the highest ballot;
+//! otherwise it makes a new change. A voter accepts the change if it has promised no higher ballot and holds all inputs
+//! before the cut (see below). The change is decided once a quorum of the old view has accepted it in one ballot. Each
+//! peer that sees these acceptances installs the change.
 //!
 //! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. All final
 //! ticks lie before the cut, because a quorum has acknowledged them, and any two quorums have a voter in common.
@@ -34,7 +34,7 @@ pub(super) struct Agreement {
     pub(super) round: u32,
     /// Value of `round` at the start of the view.
     pub(super) base_round: u32,
-    /// Time since which a change has been wanted without interruption.
+    /// Time from which on this peer has wanted a change without interruption.
     pub(super) wanted_since: Option<u64>,
 }
 
@@ -162,8 +162,8 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // The new view may revoke complete ticks that are not final, so they are counted again from the last final
-        // tick.
+        // Ticks that are complete but not final may be incomplete in the new view, which may have other players.
+        // Therefore complete ticks are counted again, from the last final tick on.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;

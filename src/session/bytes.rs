@@ -101,7 +101,7 @@ pub(super) trait Write {
     fn put_var(&mut self, value: u32) {
         self.put_var64(u64::from(value));
     }
-    /// Writes `value - base`, with the sign in the lowest bit.
+    /// Writes `value - base` as a zigzag LEB128 number: the lowest bit is the sign.
     fn put_near(&mut self, value: u32, base: u32) {
         let above = u64::from(value.saturating_sub(base));
         let below = u64::from(base.saturating_sub(value));

@@ -32,12 +32,12 @@ pub struct Timing {
     /// Time for which the other peers wait for a missing peer before they continue without it; `u64::MAX` for no limit.
     /// [`Session::go_on_without`](super::Session::go_on_without) ends a stall earlier.
     pub patience: u64,
-    /// Time for which a peer counts as heard after a packet. [`Event::Waiting`](super::Event::Waiting) reports a stall
-    /// that is longer than both this time and six ticks.
+    /// Time for which a peer counts as heard after a packet from it has arrived.
+    /// [`Event::Waiting`](super::Event::Waiting) reports a stall that is longer than both this time and six ticks.
     pub heard: u64,
     /// Time for which a peer's row (its latest status record) counts as fresh.
     pub fresh: u64,
-    /// Time for which a proposer with promises from a quorum waits for promises of the other voters.
+    /// Time for which a proposer waits for promises of the remaining voters, after a quorum has promised.
     pub promises: u64,
     /// Minimum time between the promise of a ballot and the start of another ballot. Each round without a decision
     /// lengthens this time.
@@ -89,9 +89,9 @@ pub struct Config {
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
     /// Number of seats that must be taken before the first tick, at most `seats`. The value of the
-    /// [tie-holder](super::View::tie_holder) counts.
+    /// [tie-holder](super::View::tie_holder) applies to all peers.
     pub start_with: u8,
-    /// Bit for each seat that this peer asks for; 0 for any free seats.
+    /// The seats that this peer requests, one bit for each; 0 requests any free seats.
     pub seats_wanted: u64,
     /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Peers may have
     /// different values.
@@ -104,7 +104,8 @@ pub struct Config {
     /// three round trips. The sum is limited to half of `history`, or to `seat_lead` if `seat_lead` is larger. Unused
     /// before the match begins.
     pub seat_lead: u16,
-    /// A peer that lags by at most this many ticks may get a seat.
+    /// A peer requests a seat only while its number of played ticks is at most this many below the largest
+    /// acknowledgement of the voters.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
@@ -255,7 +256,7 @@ pub enum Fault {
     LocalEnd,
     /// Ballots start while a promise is in force.
     CompetingBallots,
-    /// A proposal drops voters without a promise at once, without waiting for `patience`.
+    /// A proposal drops the voters that have not promised the ballot at once, and does not wait for `patience`.
     Accuse,
     /// A proposer ignores changes that other voters have accepted.
     ForgetAccepted,

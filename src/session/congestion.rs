@@ -1,10 +1,10 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
 //! The rate changes about once per round trip, by additive increase and multiplicative decrease (Chiu and Jain 1989).
-//! The rate was too high if more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms.
-//! Such a rise indicates a queue, which delays the inputs of the match. A loss of up to an eighth is attributed to the
-//! link. Until the rate is too high for the first time, it grows by half after each period in which it limited the
-//! sending.
+//! The rate was too high if more than an eighth of the chunks were lost, or if the round trip is more than 60 ms above
+//! its minimum. Such a rise indicates a queue, which delays the inputs of the match. A loss of up to an eighth is
+//! attributed to the link. After each period in which the rate limited the sending, it grows: by half until it is too
+//! high for the first time, and afterwards by a constant.
 
 /// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;
@@ -14,13 +14,13 @@ const RATE_MIN: u64 = 128_000;
 pub(super) const RATE_MAX: u64 = 16_000_000;
 /// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
-/// Rise of the round trip above which a queue is assumed, in microseconds.
+/// Rise of the round trip above its minimum from which on a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
 /// Bounds of the period between two changes of the rate, in microseconds.
 const PERIOD_MIN: u64 = 40_000;
 const PERIOD_MAX: u64 = 500_000;
-/// Largest burst, given as the time in microseconds in which the current rate sends it. It covers a frame at 60 Hz,
-/// because games update the session once per frame.
+/// The largest burst has as many bytes as the current rate allows in this time, in microseconds. The time is longer
+/// than a frame at 60 Hz, because games update the session once per frame.
 pub(super) const BURST: u64 = 25_000;
 /// Minimum number of chunks for an estimate of the loss.
 const CHUNKS_MIN: u32 = 8;
@@ -32,12 +32,12 @@ pub(super) struct Congestion {
     is_starting: bool,
     budget: u64,
     budget_at: u64,
-    /// Smallest and last round trip in microseconds.
+    /// Smallest round trip so far, and below the latest one, in microseconds.
     round_trip_min: u64,
     round_trip: u64,
     since: u64,
     sent: u32,
-    /// Number of chunks sent again in the period, each of which counts as a loss.
+    /// Number of chunks that were sent again in the period. Each of them counts as a loss.
     lost: u32,
     /// Whether the rate limited the sending in the period.
     is_limiting: bool,

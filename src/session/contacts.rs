@@ -1,8 +1,8 @@
-//! [`Contacts`]: the peers that a peer without a vote can ask for the match, if its contact falls silent.
+//! [`Contacts`]: the peers that a peer without a vote can ask for the match if its contact falls silent.
 //!
-//! A spectator receives the match through its contact, the peer through which it joined. If recent rows of a majority
-//! are missing, the spectator starts the join handshake with other peers, one after another. After a handshake, it
-//! continues at its current tick.
+//! A spectator receives the match through its contact, the peer through which it joined. If recent rows (status
+//! records) of a majority are missing, the spectator starts the join handshake with other peers, one after another.
+//! When a peer has accepted it, the spectator continues at its current tick.
 
 use alloc::vec::Vec;
 
@@ -11,7 +11,7 @@ use super::id::PeerId;
 
 /// Time in microseconds without fresh rows of a majority, after which this peer asks other peers.
 const SILENCE: u64 = 500_000;
-/// Time after which an unanswered attempt is given up, in microseconds.
+/// Time for which this peer tries to reach one contact before it asks the next one, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
 /// Time between two hello packets, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
@@ -76,8 +76,9 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Takes a challenge. Returns whether the challenge answers this peer's hello and comes from the contact itself,
-    /// which confirms the contact's address. Another process at this address may be in another match.
+    /// Handles a challenge. Returns whether it answers this peer's hello and the sender is the expected peer; then the
+    /// address of this contact is confirmed. The check of the sender is needed because another process, in another
+    /// match, may now use the address.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64, sender: PeerId) -> bool {
         let is_answer = |asked: &&mut PendingContact| asked.nonce == nonce && asked.id == sender;
         let Some(asked) = self.asked.as_mut().filter(is_answer) else { return false };
@@ -87,7 +88,7 @@ impl Contacts {
         true
     }
 
-    /// Takes a refusal. The next update asks another peer.
+    /// Handles a refusal: the next update asks another peer.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

@@ -98,8 +98,8 @@ pub enum Event {
         /// First tick without the peer in the seat.
         from: Tick,
     },
-    /// The game stalls because inputs of a peer are missing, or because other peers may not run further ahead of that
-    /// peer.
+    /// The match does not advance, because inputs of `peer` are missing, or because the owner of the missing inputs may
+    /// not run further ahead of `peer`.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,

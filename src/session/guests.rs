@@ -1,5 +1,6 @@
-//! [`Guests`]: peers that join through this peer, and the uploads of states to them. A guest is removed when its first
-//! row arrives. Nothing is stored before the handshake has confirmed an address.
+//! [`Guests`]: peers that join the match through this peer, and the uploads of states to them. A guest is removed when
+//! its first row ([`Row`](super::row::Row)) arrives, because it then takes part in the match, or when it stops sending
+//! requests. A peer becomes a guest only after the handshake has confirmed its address.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -13,13 +14,15 @@ use super::siphash::Secret;
 use super::state::Session;
 use super::transfer::{Pinned, Upload};
 
-/// Largest number of joining peers that one contact serves at a time.
+/// Maximum number of peers that join through one contact (the peer that they ask) at a time.
 pub const GUESTS_MAX: usize = 64;
-/// Interval in microseconds at which new cookies replace old ones. A cookie is valid for one to two intervals.
+/// Period of the cookies of the handshake, in microseconds. A cookie is valid in the period in which it is issued and
+/// in the next one.
 const COOKIE_LIFE: u64 = 15_000_000;
 /// Time without a request after which a guest is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
-/// Time between announcements of a state, in microseconds. The announcements end when the guest asks for chunks.
+/// Time between two announcements of a state ([`JoinPacket::Welcome`]) to a guest, in microseconds. The announcements
+/// end when the guest requests chunks.
 const WELCOME_INTERVAL: u64 = 200_000;
 
 #[derive(Debug)]
@@ -29,7 +32,8 @@ struct Guest {
     upload: Option<Upload>,
     asked: bool,
     welcome_at: u64,
-    /// Time of the guest's last request: to join until its upload starts, and then for chunks.
+    /// Time of the guest's last request. Until its upload starts, requests to join count; afterwards, requests for
+    /// chunks.
     heard_at: u64,
 }
 
@@ -41,7 +45,7 @@ pub(super) struct Guests {
 }
 
 impl Guests {
-    /// The valid cookies of a joining peer, the newest first.
+    /// The two valid cookies of a joining peer: that of the current period, then that of the period before.
     pub(super) fn cookies(
         secret: Secret,
         now: u64,
@@ -63,7 +67,8 @@ impl Guests {
         })
     }
 
-    /// Admits a peer whose address is confirmed, or returns the reason of the refusal.
+    /// Makes a peer whose address is confirmed a guest. Returns the reason if the peer is refused, `None` if it is a
+    /// guest.
     pub(super) fn admit(
         &mut self,
         now: u64,
@@ -121,7 +126,8 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Returns the due packets for guests. Removes guests that take part in the match or have gone.
+    /// Returns the packets that are due for guests. Removes guests whose first row has arrived, and guests without a
+    /// request for [`GUEST_PATIENCE`].
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;

@@ -1,5 +1,5 @@
-//! [`InputLog`]: the inputs of all spans. A span is the range of ticks in which one peer plays a seat (`view.rs`). This
-//! peer, the owner of the span, issues each input once, and the input never changes.
+//! [`InputLog`]: the inputs of all spans. A span is the range of ticks in which one peer, its owner, plays a seat
+//! (`view.rs`). The owner issues one input for each tick of its span, and never changes it.
 
 use alloc::vec::Vec;
 
@@ -17,11 +17,11 @@ struct SpanLog {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
-    /// All inputs are already known, or they would leave a gap.
+    /// No input was added: all of them are already known, or they would leave a gap after the known ones.
     Nothing,
-    /// The inputs from this tick on are new.
+    /// Inputs were added, the first of them for this tick.
     From(Tick),
-    /// The owner has issued a different input for this tick.
+    /// The known input of the owner for this tick differs from the given one.
     Conflict(Tick),
 }
 
@@ -46,7 +46,7 @@ impl InputLog {
         self.spans.extend(new.iter().map(empty));
     }
 
-    /// Discards all inputs. The log starts at a tick whose state is loaded.
+    /// Discards all inputs, and starts the log at `tick`, whose state has been loaded.
     pub(super) fn start_at(&mut self, spans: &[Span], tick: Tick) {
         self.spans.clear();
         let empty = |span: &Span| {
@@ -71,8 +71,8 @@ impl InputLog {
         log.bytes.get(at(from)?..at(until)?)
     }
 
-    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored, and their sender sends them
-    /// again.
+    /// Adds consecutive inputs, the first of them for tick `start`. Inputs after a gap are ignored: their sender sends
+    /// them again after the missing ones.
     pub(super) fn add(&mut self, span: usize, start: Tick, inputs: &[u8]) -> Added {
         let size = self.size;
         let Some(log) = self.spans.get_mut(span) else { return Added::Nothing };
@@ -95,7 +95,8 @@ impl InputLog {
         if log.next > before { Added::From(before) } else { Added::Nothing }
     }
 
-    /// Drops the inputs before a tick from each span of which more than half of the kept inputs are before it.
+    /// Drops the inputs before `tick`. A span in which these are at most half of the kept inputs is left unchanged,
+    /// because dropping inputs moves all later ones.
     pub(super) fn forget_before(&mut self, tick: Tick) {
         for log in &mut self.spans {
             let until = tick.min(log.next);

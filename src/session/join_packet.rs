@@ -7,22 +7,24 @@ use super::bytes::{Decoded, Malformed, Reader, Write};
 use super::id::{Key, PeerId, Tick};
 use super::packet::{PACKET_BYTES_MAX, checksum};
 
-/// Largest length of an offer in bytes.
+/// Maximum length in bytes of an offer, the data that must be equal for all peers of a match
+/// ([`Identity::offer`](super::Identity::offer)).
 pub const OFFER_BYTES_MAX: usize = 512;
 /// Bytes of a state per packet.
 pub(super) const CHUNK_BYTES: usize = 1152;
-/// Largest number of words in the bit mask of received chunks.
+/// Maximum number of 64-bit words in the bit mask of received chunks.
 pub(super) const MASKS_MAX: usize = 16;
 pub(super) const ADDRESS_LIST_MAX: usize = 24;
 
-/// Reason of a refusal.
+/// Reason for which a contact (the peer that was asked) refuses a joining peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefusalReason {
     /// The offers differ: another game, setup or version.
     Offer,
-    /// Too many peers join through this contact, or the contact serves too many peers.
+    /// The maximum number of peers already join through this contact, or it already sends packets to the maximum number
+    /// of peers.
     Full,
-    /// The incarnation already has a vote in the match.
+    /// The incarnation is that of the contact or of a voter of the match.
     Taken,
     /// The contact is not in a match yet.
     NotReady,
@@ -30,15 +32,15 @@ pub enum RefusalReason {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum JoinPacket {
-    /// Asks to join. The cookie is 0 at first.
+    /// Asks to join. The cookie is 0 until a challenge has arrived.
     Hello {
         nonce: u64,
         key: Key,
         cookie: u64,
         offer: Vec<u8>,
     },
-    /// Carries a cookie. The next hello returns the cookie, which proves that the joining peer receives packets at its
-    /// address. The sender of a challenge stores nothing.
+    /// Answers a hello with a cookie. The joining peer sends its next hello with this cookie, which proves that it
+    /// receives packets at its address. The sender of a challenge stores nothing.
     Challenge {
         nonce: u64,
         cookie: u64,
@@ -81,9 +83,9 @@ pub(super) enum JoinPacket {
     },
 }
 
-/// Offset of the kind in the body. Match packets have their flags here.
+/// Offset of the kind in the body of a join packet. The body of a match packet has its flags at this offset.
 const KIND_AT: usize = 4;
-/// Smallest kind of a join packet. It is larger than any flags of a match packet.
+/// Lowest kind of a join packet. All values of the flags of a match packet are lower.
 const KIND_FIRST: u8 = 0x80;
 
 pub(super) fn is_join_packet(body: &[u8]) -> bool {

@@ -12,24 +12,25 @@ use super::view::{View, has_bit};
 #[derive(Clone, Debug)]
 pub(super) struct Lifecycle {
     pub(super) status: Status,
-    /// Time at which this peer began to leave, had left, or had finished. Linger times start here.
+    /// Time at which this peer began to leave, had left, or had finished. The times for which it continues to answer
+    /// (`linger`, `linger_max`) start here.
     since: Option<u64>,
     /// Whether this peer lost its vote against its will.
     dropped: bool,
-    /// Whether the tie-holder or a quorum votes to kick this peer, or voted so when this peer lost its vote.
+    /// Whether the tie-holder or a quorum votes to kick this peer, or did so when this peer lost its vote.
     kicked: bool,
     left: bool,
-    /// The peer that play waits for, as last reported.
+    /// The peer that holds up the match, as last reported.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
     /// Peers that request a pause, as last reported.
     paused: Vec<PeerId>,
 }
 
-/// Minimum length of a reported stall in ticks.
+/// A stall is reported only when it lasts longer than this number of ticks.
 const WAITING_TICKS: u64 = 6;
 
-/// Time before the end of a match at which this peer requests the end, in microseconds.
+/// This peer sends its request for the end of the match this long before the end, in microseconds.
 const END_NOTICE: u64 = 2_000_000;
 
 impl Lifecycle {
@@ -79,7 +80,7 @@ impl Session {
 
     pub(super) fn update_wants(&mut self) {
         let is_kicked = self.is_voted(|removal| *removal == Removal::Kick(self.key));
-        // The rows of a new view arrive later than the view, so `kicked` stays set until all rows have arrived.
+        // The rows of the voters arrive later than their view. Until all of them have arrived, `kicked` stays set.
         let is_unknown = !self.all_voters(|_| true);
         self.lifecycle.kicked = is_kicked || self.lifecycle.kicked && (self.lifecycle.dropped || is_unknown);
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
@@ -106,7 +107,7 @@ impl Session {
         }
     }
 
-    /// A requested seat that another peer has.
+    /// A seat that this peer requests but that a peer with another key plays.
     pub(crate) fn taken_seat(&self) -> Option<u8> {
         let want = self.wants.seats?;
         let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);
@@ -145,7 +146,8 @@ impl Session {
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
-            // A minority cannot decide: the peer leaves without a decision after `linger_max`.
+            // A minority cannot agree on a change without this peer. This peer then leaves without a change, after
+            // `linger_max`.
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
             return if waited { Status::Closed } else { Status::Leaving };
@@ -170,8 +172,8 @@ impl Session {
         !is_over && !self.lifecycle.kicked && self.view.voter(self.me).is_none() && !self.is_connected()
     }
 
-    /// Whether a peer that has finished or left may stop answering. `known` is true if the other peers need no more
-    /// answers.
+    /// Whether this peer may stop answering, after it has finished or left at the time `since`. `known` is true if the
+    /// other peers need no more answers.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);
@@ -205,8 +207,9 @@ impl Session {
         self.events.push_back(Event::Waiting { peer, heard });
     }
 
-    /// Reports that this peer is too far behind. Runs in each update, and not only when a stall begins: after an
-    /// outage, the rows that show the lag arrive later than the stall is reported.
+    /// Reports that this peer is so far behind that the other peers may no longer keep the inputs or changes that it
+    /// lacks. Runs in each update, and not only when a stall begins: after an outage, the rows that show the lag arrive
+    /// later than the stall is reported.
     fn tell_too_far_behind(&mut self, waits: bool) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
         let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
@@ -219,7 +222,7 @@ impl Session {
         }
     }
 
-    /// Reports requests of voters for a pause, and their withdrawal. A voter that leaves withdraws its request.
+    /// Reports which other voters begin or cease to request a pause. A voter that loses its vote ceases to request one.
     fn tell_pauses(&mut self) {
         let others = self.peers.voters().map(|(_, remote)| remote).filter(|remote| remote.id != self.me);
         let asking = others.filter(|remote| remote.row.as_ref().is_some_and(|row| row.paused));

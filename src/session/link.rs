@@ -1,6 +1,7 @@
 /// Binary logarithm of the unit of timestamps in packets, 128 microseconds.
 const UNIT_SHIFT: u32 = 7;
-/// Longest round trip that is accepted, in microseconds. Timestamps in packets wrap after 8.4 s.
+/// Longest round trip that is accepted, in microseconds: less than half the 8.4 s after which timestamps in packets
+/// wrap.
 const ROUND_TRIP_MAX: u64 = 4_000_000;
 const LOSS_WINDOW: u32 = 64;
 
@@ -23,7 +24,7 @@ const LOSS_WINDOW: u32 = 64;
 pub struct Link {
     /// Smoothed round trip in microseconds; 0 if none was measured.
     pub round_trip: u64,
-    /// Smoothed deviation of the round trip, in microseconds.
+    /// Smoothed absolute difference between a measured round trip and the smoothed one, in microseconds.
     pub jitter: u64,
     /// Share of the peer's packets that did not arrive, in thousandths, updated about every 64 packets.
     pub loss_per_mille: u32,
@@ -49,8 +50,8 @@ pub(super) fn stamp(now: u64) -> u16 {
 }
 
 impl Link {
-    /// Echo for the next packet to the peer: the timestamp of the peer's newest packet plus the time since its arrival.
-    /// This time then does not count in the round trip that the peer measures.
+    /// Echo for the next packet to the peer: the timestamp of the peer's newest packet plus the time since its arrival,
+    /// so that the round trip that the peer measures does not include this time.
     pub(super) fn echo(&self, now: u64) -> Option<u16> {
         let (sent, arrived) = self.last_sent?;
         let held = now.checked_sub(arrived).filter(|&held| held < ROUND_TRIP_MAX)?;

@@ -8,7 +8,7 @@
 //! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
 //! - [`Endpoint`]: a session with addresses. It opens or joins a match and sends states to peers that join.
 //! - [`View`]: the seats, players and voters of a match. Views change by agreement of a majority.
-//! - [`Config`]: the parameters of a match and of a peer. A [`Config::guess`] of 0 is lockstep.
+//! - [`Config`]: the parameters of a match and of a peer. With a [`Config::guess`] of 0, the peer plays in lockstep.
 //!
 //! `docs/PROTOCOL.md` has the rules, the packets byte by byte, and the invariants that simulations check.
 

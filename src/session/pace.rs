@@ -1,13 +1,13 @@
 //! [`Pace`]: the time of the next tick, and the delay of this peer's inputs.
 //!
 //! The current tick of another player is estimated from its newest row, the row's age and half a round trip. A voter
-//! steers towards the median of these estimates. A peer without a vote steers towards [`FOLLOW`] ticks behind the final
-//! ticks. Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may
-//! differ. A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
+//! adjusts its tick length to approach the median of these estimates. A peer without a vote approaches the tick that is
+//! [`FOLLOW`] ticks behind the final ticks. Ticks become at most 1/8 longer or 1/16 shorter, so that the speed changes
+//! gradually. A peer that is far behind plays ticks before they are due, and a voter that is far ahead waits.
 //!
-//! A voter catches up with the other players, and not with the complete ticks (those with all inputs). To play a tick
-//! is to issue inputs for a later tick. If all players played every complete tick at once, these inputs would complete
-//! further ticks, and all players would run ahead without end.
+//! A voter catches up with the other players, not with the number of complete ticks (ticks with all inputs), because a
+//! voter that plays a tick issues inputs for a later tick. If all players played every complete tick at once, these
+//! inputs would complete further ticks, and all players would run ahead without end.
 
 use alloc::vec::Vec;
 
@@ -28,8 +28,9 @@ pub(super) struct Pace {
     delay_at: u64,
     /// Whether this peer waits because another one is far behind.
     held: bool,
-    /// Number of ticks that this peer may play at once. For a voter: complete ticks that it has not played, at most its
-    /// lag behind the median of the other players. For a peer without a vote: final ticks that it has not played.
+    /// Number of ticks that this peer may play before they are due. For a voter: complete ticks that it has not played,
+    /// at most its lag behind the median of the other players. For a peer without a vote: final ticks that it has not
+    /// played.
     behind: Tick,
     /// Whether this peer has just got a vote and plays ticks before they are due until it is level with the others.
     hurries: bool,
@@ -41,11 +42,11 @@ const AHEAD_MAX: Tick = 6;
 const LATE_MAX: u64 = 3;
 /// A peer plays ticks before they are due while [`Pace::behind`] is at least this number.
 const CATCH_UP: Tick = 12;
-/// Minimum time between steps of the delay, in microseconds.
+/// Minimum time between two changes of the input delay by one tick, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
 /// Ticks by which a peer without a vote stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Leads over other peers are measured in units of a tick divided by this number.
+/// Leads over other players are measured in units of 1/256 tick.
 const PART: i64 = 256;
 
 impl Pace {
@@ -78,7 +79,7 @@ impl Pace {
         self.behind = self.behind.saturating_sub(1);
     }
 
-    /// Notes that the inputs were issued but the tick cannot be played yet.
+    /// Notes that a tick was due but could not be played, for example because inputs are missing.
     pub(super) fn blocked(&mut self, now: u64) {
         let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
         self.next_at = Some(self.next_at.unwrap_or(now).max(oldest));
@@ -94,7 +95,7 @@ impl Session {
         let tick = self.pace.tick_micros;
         let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
         let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
-        // Each tick corrects 1/32 of the lead.
+        // In each tick, the adjustment removes 1/32 of the lead.
         let adjust = ahead * i64::try_from(tick).unwrap_or(0) / (PART * 32);
         let most = i64::try_from(tick / 8).unwrap_or(0);
         let adjust = adjust.clamp(-most / 2, most);
@@ -109,7 +110,8 @@ impl Session {
         self.adapt_delay();
     }
 
-    /// The lead over each other peer that plays, in 1/256 ticks, ascending.
+    /// The leads of this peer over the other players with fresh rows, in 1/256 ticks, ascending. A lag is a negative
+    /// lead.
     fn ticks_ahead(&self) -> Vec<i64> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let tick = self.pace.tick_micros.max(1);
@@ -130,8 +132,9 @@ impl Session {
         ahead
     }
 
-    /// The peer that play waits for: a peer whose input for the first incomplete tick is missing. If that peer itself
-    /// waits for slower players, the result is the slowest player that could play on.
+    /// The peer that holds up the match: the owner of a missing input for the first incomplete tick. If this owner
+    /// leads another player by 6 ticks or more, it is itself held up. Then the result is the slowest player that has
+    /// the inputs for its next tick.
     #[must_use]
     pub fn waiting_for(&self) -> Option<PeerId> {
         let tick = self.progress.complete;
@@ -167,8 +170,8 @@ impl Session {
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// Catches up after this peer got a vote. The input delay is set at once, so that this peer's first inputs arrive
-    /// in time.
+    /// Begins to catch up, after this peer got a vote. The input delay is set at once, so that this peer's first inputs
+    /// arrive in time.
     pub(super) fn hurry(&mut self) {
         self.pace.hurries = true;
         self.pace.delay = self.delay_aim();
@@ -177,7 +180,8 @@ impl Session {
 
     fn adapt_delay(&mut self) {
         let now = self.clock.now;
-        // Inputs have to arrive in time at a peer that is about to play, so the delay rises at once.
+        // Before the first tick of the match or of a joining player, the delay rises at once, so that the inputs arrive
+        // in time.
         let played = self.play.played;
         if played == 0 || self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());
@@ -193,7 +197,7 @@ impl Session {
     }
 
     /// Target of the input delay in ticks, from the slowest link to a player: half a round trip plus twice the jitter
-    /// plus the interval of packets, minus [`Config::guess`].
+    /// plus the interval of packets, minus [`Config::guess`]. The result is within the bounds of the delay.
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);
@@ -202,7 +206,7 @@ impl Session {
             remote.id != self.me && within(remote.fresh, fresh, active) && self.view.seats_of(remote.id) != 0
         });
         let latency = players.map(|(_, remote)| remote.link.round_trip / 2 + 2 * remote.link.jitter).max();
-        // Inputs wait for the next packet, which large matches do not send in every tick.
+        // Inputs wait for the next packet. In large matches, the interval of packets is longer than a tick.
         let packet = (self.send_interval() / tick).max(1);
         let needed = latency.map_or(0, |latency| latency.div_ceil(tick) + packet);
         let needed = u16::try_from(needed).unwrap_or(most).saturating_sub(self.config.guess);

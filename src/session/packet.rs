@@ -43,7 +43,7 @@ pub(super) struct Header {
     pub(super) sequence: u16,
     /// Time of sending in units of 128 us.
     pub(super) sent: u16,
-    /// Timestamp of the receiver's newest packet, plus the time since it arrived.
+    /// Timestamp of the last packet from the receiver of this packet, plus the time between its arrival and `sent`.
     pub(super) echo: Option<u16>,
 }
 
@@ -51,14 +51,15 @@ pub(super) struct Header {
 pub(super) struct Packet {
     pub(super) header: Header,
     pub(super) row: Row,
-    /// Consecutive changes of the view. The number is that of the view to which the first change leads.
+    /// Consecutive changes of the view, and the number of the view to which the first change leads.
     pub(super) changes: (u32, Vec<Change>),
     pub(super) runs: Vec<Run>,
     pub(super) inputs: Vec<u8>,
     pub(super) foreign: Vec<(PeerId, Row)>,
 }
 
-/// First bytes of a packet: a checksum seeded with the tag of the match. Packets of other matches have other checksums.
+/// The first four bytes of a packet: a checksum seeded with the tag of the match, so that packets of other matches are
+/// rejected.
 pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
     let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
     [digest[0], digest[1], digest[2], digest[3]]
@@ -73,8 +74,8 @@ pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     }
 }
 
-/// Composes a packet. Its methods must be called in the order below. Parts that would not fit in [`PACKET_BYTES_MAX`]
-/// are left out.
+/// Composes a packet. Call its methods in the order in which they are declared. Parts that would not fit in
+/// [`PACKET_BYTES_MAX`] are left out.
 pub(super) struct Composer {
     bytes: Vec<u8>,
     flags: u8,
@@ -82,7 +83,7 @@ pub(super) struct Composer {
 
 /// Offset of the flags, which follow the checksum and the sender.
 const FLAGS_AT: usize = 8;
-/// Bytes kept free for the counts of the sections that may follow.
+/// Number of bytes kept free for the counts of the sections that may follow.
 pub(super) const RESERVE: usize = 4;
 
 impl Composer {
@@ -102,8 +103,8 @@ impl Composer {
         Composer { bytes, flags }
     }
 
-    /// Appends a section with as many parts as fit, and leaves `room` bytes free. A section without parts is left out.
-    /// Returns the number of parts.
+    /// Appends a section with at most `most` parts, as many as fit if `room` bytes stay free. A section without parts
+    /// is left out. Returns the number of parts.
     fn section<T>(
         &mut self,
         flag: u8,
@@ -146,8 +147,8 @@ impl Composer {
         }
     }
 
-    /// Appends input runs: span, first tick, inputs of `size` bytes each. `room` bytes are left free. A run that does
-    /// not fit is shortened. Returns the tick after the last input of each run that fits.
+    /// Appends runs, each given by its span, its first tick and its inputs of `size` bytes each. `room` bytes stay
+    /// free. A run that does not fit is shortened. Returns the tick after the last input of each run that fits.
     pub(super) fn runs<'a>(
         &mut self,
         size: usize,
@@ -260,7 +261,7 @@ impl Packet {
     }
 }
 
-/// Reads the number of parts of a section. A section whose flag is set is not empty.
+/// Reads the number of parts of a section. The number 0 is malformed, because an empty section has no flag.
 fn section_count(reader: &mut Reader, most: usize) -> Decoded<usize> {
     let count = usize::from(reader.u8()?);
     if (1..=most).contains(&count) { Ok(count) } else { Err(Malformed) }

@@ -7,16 +7,18 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of known peers. To add a further peer, the peer without a vote that has been silent longest is
-/// removed.
+/// Maximum number of known peers. If it is reached, a further peer replaces the peer without a vote that has been
+/// silent longest.
 const PEERS_MAX: usize = 192;
-/// A peer without a vote is served until this time after its last packet, in microseconds. To serve a peer is to send
-/// it rows, changes and inputs.
+/// A peer without a vote is served (gets rows, changes and inputs) until this time after its last packet, in
+/// microseconds.
 const SERVED: u64 = 5_000_000;
-/// Longest round trip through other peers that is measured, in microseconds. A longer one is attributed to an outage.
+/// Longest measured round trip through other peers, in microseconds. A longer one is ignored, because an outage is its
+/// likely cause.
 const RELAYED_MAX: u64 = 1_000_000;
 
-/// Position in a series of runs. A series sends the inputs of a span that do not fit in one packet.
+/// Position in a series of runs. A series sends, over several packets, the inputs of a span that do not fit in one
+/// packet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Resume {
     pub(super) span: u16,
@@ -46,19 +48,20 @@ pub(super) struct Remote {
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
     pub(super) resumes: Vec<Resume>,
-    /// The span and the foreign row (row of another peer) with which the next packet to the peer begins, because the
-    /// last packet had no room for them.
+    /// Span of the first run in the next packet to the peer, because the last packet had no room for this run.
     pub(super) next_span: u16,
+    /// Peer of the first foreign row (row of another peer) in the next packet, because the last packet had no room for
+    /// this row.
     pub(super) next_row: Option<PeerId>,
     pub(super) link: Link,
-    /// Measurement of the round trip through other peers, while no packets arrive from the peer itself: span and tick
-    /// of an own input, and the time at which it was issued. A relayed row that acknowledges the input ends the
-    /// measurement.
+    /// Measurement of the round trip through other peers, while no packets arrive from the peer itself: the span and
+    /// tick of an own input, and the time at which the input was issued. A relayed row that acknowledges the input ends
+    /// the measurement.
     pub(super) probe: Option<(usize, Tick, u64)>,
 }
 
 impl Remote {
-    /// Whether the peer is to be served although it may have no vote.
+    /// Whether the peer is served even without a vote: a packet from it arrived, or it was attached, within [`SERVED`].
     pub(super) fn is_served(&self, now: u64) -> bool {
         within(self.heard.max(self.attached), SERVED, now)
     }
@@ -76,13 +79,13 @@ impl Remote {
         }
     }
 
-    /// The latest of the times at which a row or packet of the peer arrived, the peer was attached, or became known.
+    /// Time of the last sign of the peer: a row or packet from it, a call of `attach` for it, or that it became known.
     fn known_at(&self) -> Option<u64> {
         self.fresh.max(self.heard).max(self.attached).max(Some(self.contact))
     }
 }
 
-/// All known peers. This peer is the first.
+/// All known peers. The first one is this peer itself.
 #[derive(Clone, Debug)]
 pub(super) struct Peers {
     pub(super) list: Vec<Remote>,
@@ -105,7 +108,8 @@ impl Peers {
         self.list.iter_mut().find(|remote| remote.id == id)
     }
 
-    /// Adds an unknown peer, with `now` as its last contact. If the peer is known, only a missing key is set.
+    /// Adds an unknown peer, with `now` as the time of its last contact. If the peer is known already, sets only its
+    /// key, if the key is missing.
     pub(super) fn add(&mut self, id: PeerId, key: Option<Key>, now: u64) {
         if let Some(remote) = self.find_mut(id) {
             remote.key = remote.key.or(key);
@@ -141,8 +145,8 @@ impl Peers {
         self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
     }
 
-    /// Makes room for a peer. If the list is full, this removes the peer without a vote that has been silent longest,
-    /// unless it is still served. Returns whether there is room.
+    /// Makes room for a peer. If the list is full, removes the peer without a vote that has been silent longest, unless
+    /// that peer is still served. Returns whether there is room.
     pub(super) fn has_room(&mut self, id: PeerId, view: &View, now: u64) -> bool {
         self.find(id).is_some() || self.list.len() < PEERS_MAX || {
             let strangers = self.list.iter().enumerate().skip(1);
@@ -155,8 +159,8 @@ impl Peers {
         }
     }
 
-    /// Begins to measure the round trips to peers that are not heard. The caller has just issued the input of `span`
-    /// for `tick`.
+    /// Begins to measure the round trips to peers from which no packets arrive. The caller has just issued the input of
+    /// `span` for `tick`.
     pub(super) fn probe(&mut self, span: usize, tick: Tick, heard: u64, now: u64) {
         for remote in self.list.iter_mut().skip(1).filter(|remote| !within(remote.heard, heard, now)) {
             remote.probe.get_or_insert((span, tick, now));
@@ -171,7 +175,7 @@ impl Peers {
         (0..self.voters.len()).filter_map(|index| Some((index, self.voter(index)?)))
     }
 
-    /// Rows of voters that are in view `view`, with the index of the voter.
+    /// Voters whose row belongs to the view with the number `view`, each with its index among the voters and its row.
     pub(super) fn rows(&self, view: u32) -> impl Iterator<Item = (usize, &Remote, &Row)> {
         self.voters().filter_map(move |(index, remote)| {
             let row = remote.row.as_ref().filter(|row| row.view == view)?;

@@ -1,4 +1,4 @@
-//! Plays ticks: the inputs for the game, and rollback of ticks that were played with wrong inputs.
+//! Plays ticks: composes the inputs for the game, and rolls back ticks that were played with wrong inputs.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -20,7 +20,7 @@ pub(super) struct Play {
     /// Inputs of the ticks from `used_from` to `played`, which a rollback may play again.
     used: VecDeque<TickInputs>,
     used_from: Tick,
-    /// Ticks for which the game keeps the state before the tick, ascending.
+    /// Ticks before which the game has saved its state, ascending. The game still keeps these states.
     saves: VecDeque<Tick>,
     /// First tick whose inputs may differ from the inputs that it was played with.
     dirty: Tick,
@@ -135,8 +135,8 @@ impl Session {
         limit.min(self.stop())
     }
 
-    /// Whether the next tick is due, and can be played or needs inputs of this peer's seats. A closed session still
-    /// plays final ticks.
+    /// Whether to call [`advance`](Session::advance): it is time for the next tick, and this tick can be played or
+    /// inputs of this peer's seats have to be issued. A closed session still plays final ticks.
     #[must_use]
     pub fn is_due(&self, now: u64) -> bool {
         self.pace.is_time(now.min(TIME_MAX)) && (self.play.played < self.play_limit() || self.issues())
@@ -153,8 +153,9 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of a span of this peer for which no input may be issued yet. The inputs of the first `delay + 1`
-    /// ticks are issued at once, one in each call of `advance`, so that no peer waits for them.
+    /// First tick for which the input of an own span may not be issued yet. At the start of a span, consecutive calls
+    /// of `advance` issue the inputs of `delay + 1` ticks without waiting for further ticks, so that no peer waits for
+    /// them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
@@ -171,7 +172,8 @@ impl Session {
     /// further calls issue the inputs of the additional ticks, and then the next tick is played.
     ///
     /// # Errors
-    /// [`InputSize`] unless there is one input for each own seat. Then nothing is issued or played.
+    /// [`InputSize`] if `inputs` does not contain exactly one input for each own seat. In this case nothing is issued
+    /// or played.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -222,8 +224,8 @@ impl Session {
         issued
     }
 
-    /// Plays ticks again if their inputs differ from the inputs used before, and takes back ticks after the end of the
-    /// match.
+    /// Rolls back to the first tick that was played with wrong inputs, and plays the ticks from it on again. Takes back
+    /// ticks after the end of the match.
     pub(super) fn resolve(&mut self) {
         let mut tick = self.play.dirty.max(self.play.used_from);
         self.play.dirty = NEVER;
@@ -234,7 +236,7 @@ impl Session {
             if used.bytes == known.bytes && used.absent == known.absent {
                 used.guessed = known.guessed;
             } else if known.guessed != 0 && Self::differs_in_guesses_only(used, &known) {
-                // A changed guess is no reason to play the tick again.
+                // If only guesses have changed, the tick is not played again.
                 used.guessed = known.guessed;
             } else {
                 self.rewind(tick);
@@ -257,7 +259,8 @@ impl Session {
                 .all(|(seat, (used, known_input))| used == known_input || has_bit(known.guessed, seat))
     }
 
-    /// Loads the last saved state at or before a tick, and plays on with the inputs known now.
+    /// Loads the last saved state at or before a tick, and plays the ticks from there on again with the inputs known
+    /// now.
     fn rewind(&mut self, tick: Tick) {
         let limit = self.play_limit().max(self.progress.fin.min(self.play.played));
         let target = self.play.played.min(limit);
@@ -292,7 +295,8 @@ impl Session {
         self.play.played = tick.saturating_add(1);
     }
 
-    /// Updates the number of played ticks that are final, and drops the data for rollbacks to them.
+    /// Updates the number of played ticks that are final, and drops the saved states and inputs that no rollback needs
+    /// any more.
     fn confirm(&mut self) {
         let play = &mut self.play;
         let confirmed = self.progress.fin.min(play.played);
@@ -319,7 +323,8 @@ impl Session {
         }
     }
 
-    /// Passes the hash requested by [`Request::Checksum`].
+    /// Takes the hash of the state that [`Request::Checksum`] has requested, and compares it with the hashes of other
+    /// peers.
     pub fn report_hash(&mut self, tick: Tick, hash: u128) {
         if self.play.hashes.len() == HASHES_MAX {
             self.play.hashes.pop_front();

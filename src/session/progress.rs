@@ -1,11 +1,11 @@
 //! Complete, acknowledged and final ticks.
 //!
 //! A tick is *complete* when this peer has all its inputs. A tick in which no peer plays is complete if a peer plays in
-//! a later tick, if it lies before the cut, or if the end of the match is decided: then no change of the view can add a
-//! player to it. This peer *acknowledges* complete ticks until it promises a ballot, which freezes the number of
-//! acknowledged ticks. A complete tick is *final* when a quorum of this view acknowledges it, when it lies before the
-//! view's cut, or when a voter's row in this view states it as final. A change of the view may revoke complete ticks,
-//! but never final ones.
+//! a later tick, if the tick lies before the cut, or if the end of the match is decided: in each of these cases, no
+//! change of the view can add a player to it. This peer *acknowledges* complete ticks. When it promises a ballot, the
+//! number of acknowledged ticks is frozen until the view changes. A complete tick is *final* when a quorum of this view
+//! acknowledges it, when it lies before the view's cut, or when a voter's row in this view states it as final. A change
+//! of the view may revoke complete ticks, but never final ones.
 
 use alloc::vec::Vec;
 
@@ -19,7 +19,8 @@ pub(super) struct Progress {
     pub(super) complete: Tick,
     pub(super) ack: Tick,
     pub(super) fin: Tick,
-    /// Time at which `complete` last increased. After a view change, only an increase above the old value counts.
+    /// Time at which `complete` last increased. If a change of the view has decreased it, only an increase above the
+    /// value before the change counts.
     pub(super) moved_at: u64,
     /// Indices of the spans with ticks from `live_from` on. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
@@ -66,7 +67,7 @@ impl Session {
     fn complete_ticks(&mut self) {
         while self.progress.complete < self.view.stop() && self.view.begun {
             let tick = self.progress.complete;
-            // Up to the next start or end of a span, the same spans cover each tick.
+            // Up to the next start or end of a span, all ticks are in the same spans as `tick`.
             let mut limit = self.view.stop();
             let mut goes_on = self.view.end.is_some();
             for &index in &self.progress.live {
@@ -80,7 +81,8 @@ impl Session {
                 }
             }
             if !goes_on {
-                // A peer may still join in a tick from the cut on, so these ticks are not complete yet.
+                // No peer plays from `tick` on, but a peer may still join in a tick from the cut on, so such ticks are
+                // not complete yet.
                 limit = limit.min(self.view.cut);
             }
             if limit <= tick || limit == NEVER {
@@ -103,7 +105,7 @@ impl Session {
         self.progress.fin = fin;
         if fin - self.progress.cleaned >= CLEAN_INTERVAL {
             self.progress.cleaned = fin;
-            // A game that does not advance still needs the inputs of final ticks.
+            // If the game has not played all final ticks, it still needs their inputs.
             let needed = self.play.needed_from().min(fin);
             self.progress.follow(&self.view, needed);
             self.log.forget_before(fin.saturating_sub(self.config.log_ticks).min(needed));

@@ -20,10 +20,11 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Number of rounds without a decision up to which the time limit of a ballot grows linearly. After more rounds, the
-/// limit grows quadratically.
+/// The time limit of a ballot grows with each round of a view that brings no decision: linearly up to this number of
+/// rounds, quadratically afterwards.
 const ROUNDS_MAX: u64 = 4;
-/// Upper bound of the time limit of a ballot in microseconds, unless `ROUNDS_MAX` times the initial limit is larger.
+/// Upper bound of the time limit of a ballot in microseconds. If `ROUNDS_MAX` times the initial limit is larger, that
+/// is the bound.
 const BALLOT_MAX: u64 = 6_000_000;
 
 impl Session {
@@ -61,8 +62,9 @@ impl Session {
         ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
-    /// Whether another voter has been out of contact for `patience`, and either play has stalled for `patience` or that
-    /// voter has no seat. `rank` lengthens `patience`, so that voters do not start ballots at the same time.
+    /// Whether to start a ballot because of a silent voter: another voter has been out of contact for `patience`, and
+    /// either play has stalled for `patience` or that voter has no seat. `rank` lengthens `patience`, so that voters do
+    /// not start ballots at the same time.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -98,7 +100,7 @@ impl Session {
         tie_holder == self.me && taken.count_ones() >= u32::from(self.config.start_with.max(1))
     }
 
-    /// Fresh rows of voters in this view.
+    /// Voters whose newest row is fresh and belongs to this view, each with this row.
     fn fresh_rows(&self) -> impl Iterator<Item = (&Remote, &Row)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let rows = self.peers.rows(self.view.number);
@@ -106,7 +108,7 @@ impl Session {
             .map(|(_, remote, row)| (remote, row))
     }
 
-    /// Peers without a vote that request seats, and to which seats may be given.
+    /// Peers without a vote to which the seats that they request may be given, each with its request.
     fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, SeatWant)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         self.peers.list.iter().filter_map(move |remote| {
@@ -126,8 +128,8 @@ impl Session {
         })
     }
 
-    /// Whether a voter with these seats fits in the limits of a view, after the voters in `leaves` and in `replaced`
-    /// have left and `joined` other voters have joined.
+    /// Whether a view has room for another voter with these seats, after the voters in `leaves` and in `replaced` have
+    /// left and `joined` other voters have joined.
     fn may_add(&self, want: SeatWant, leaves: u64, joined: usize) -> bool {
         let gone = usize::try_from((leaves | self.replaced()).count_ones()).unwrap_or(0);
         self.view.voters.len().saturating_sub(gone) + joined < SEATS_MAX
@@ -177,8 +179,9 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Chooses seats for a joining peer among the `free` seats that it requests: first seats that its key had before,
-    /// then seats that nobody had, then other seats. `None` if there are too few.
+    /// Chooses seats for a joining peer among the `free` seats. If it requests certain seats, only these are
+    /// considered. Seats that its key had before come first, then seats that nobody had, then other seats. `None` if
+    /// there are too few.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -194,7 +197,8 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Advances this peer's ballot by a step. Returns whether another step may be possible.
+    /// Performs the next step of this peer's ballot, if it is possible. Returns whether another step may be possible at
+    /// once.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;
@@ -272,8 +276,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first tick of joining peers. It covers the round trips of promises and
-    /// acceptances, and the time until the first inputs arrive.
+    /// Number of ticks from the cut to the first tick of joining peers. It leaves time for the round trips of promises
+    /// and acceptances, and for the first inputs to arrive.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
@@ -285,7 +289,7 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that wants to leave or is removed by votes. Also for each voter that has not promised the
+    /// Bit for each voter that leaves with the change: it wants to leave, votes remove it, or it has not promised the
     /// ballot and has been out of contact for `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;

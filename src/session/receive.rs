@@ -1,4 +1,4 @@
-//! Processes received packets, and the time that passes.
+//! Processes received packets, and advances the session in time.
 
 use super::config::{Fault, TIME_MAX};
 use super::event::Event;
@@ -9,11 +9,13 @@ use super::peers::within;
 use super::row::{Removal, Row};
 use super::state::Session;
 
-/// Lead over the complete ticks above which inputs are dropped, so that no peer exhausts the memory.
+/// If the known inputs of a span lead the complete ticks by more than this number of ticks, further inputs of the span
+/// are dropped, so that no peer can exhaust the memory.
 const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
-    /// Advances the clocks. After a suspension, `active` advances by a limited time.
+    /// Advances the clocks. The clock `active` advances by at most `Timing::step_max`, also after a suspension of the
+    /// program.
     pub(super) fn look(&mut self, now: u64) {
         let now = now.min(TIME_MAX);
         let passed = now.saturating_sub(self.clock.now);
@@ -21,8 +23,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a packet. Returns its sender; `None` if the session is closed, the packet is malformed or of another
-    /// match, or its sender is unknown or this peer itself.
+    /// Processes a packet. Returns its sender; `None` if the session is closed, if the packet is malformed or belongs
+    /// to another match, or if its sender is unknown or is this peer itself.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -86,7 +88,7 @@ impl Session {
         }
     }
 
-    /// Takes a relayed row. The row may belong to an unknown peer that requests a seat.
+    /// Takes a row that another peer relays. If the row's peer is unknown, it is added only if the row requests seats.
     fn take_foreign_row(&mut self, id: PeerId, row: Row) {
         if id == self.me || self.config.has(Fault::NoRelay) {
             return;

@@ -1,6 +1,6 @@
-//! [`Routes`]: the addresses of peers. A received packet is attributed to the incarnation that it states. A peer sends
-//! match packets to an address only after a probe or the handshake has shown that the receiver gets packets there.
-//! Hence a peer may change its address, but cannot direct match packets to another machine.
+//! [`Routes`]: the addresses of peers. A received packet belongs to the [`PeerId`] that it states, whatever address it
+//! comes from. A peer sends match packets to an address only after a probe or the handshake has shown that the receiver
+//! gets packets there. Hence a peer may change its address, but cannot direct match packets to another machine.
 
 use alloc::vec::Vec;
 
@@ -15,7 +15,7 @@ const PROBE_INTERVAL: u64 = 250_000;
 const PROBES_MAX: u8 = 40;
 /// Maximum number of addresses of a peer that are probed at a time.
 const CANDIDATES_MAX: usize = 4;
-/// After a packet from a peer's address, no other address replaces it for this time, in microseconds.
+/// Time in microseconds after the last packet from a peer's address during which another address does not replace it.
 const KEPT: u64 = 500_000;
 const ROUTES_MAX: usize = 192;
 
@@ -125,7 +125,7 @@ impl Routes {
     }
 }
 
-/// The token of a probe. A peer that receives packets at the address returns it.
+/// The token of a probe to an address. A peer that receives the probe there returns the token.
 pub(super) fn token(secret: Secret, id: PeerId, address: &Address) -> u64 {
     let mut bytes = Vec::with_capacity(64);
     bytes.put_u32(id.0);

@@ -19,7 +19,7 @@ pub(super) struct Ballot {
 pub(super) struct Wants {
     pub(super) seats: Option<SeatWant>,
     pub(super) leave: bool,
-    /// First tick after the end that the peer requests for the match.
+    /// Requested end of the match: the first tick that is not played.
     pub(super) end: Option<Tick>,
     /// Votes against peers, at most [`REMOVALS_MAX`].
     pub(super) removals: Vec<Removal>,
@@ -37,9 +37,9 @@ pub(super) struct SeatWant {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Removal {
-    /// Play continues without this incarnation, which may return.
+    /// Vote to continue without this incarnation, which may return.
     Without(PeerId),
-    /// This identity gets no seat any more.
+    /// Vote to remove this identity, which gets no seat while enough votes count.
     Kick(Key),
 }
 
@@ -54,12 +54,13 @@ pub(super) struct Row {
     pub(super) fin: Tick,
     /// Number of ticks that the game has played.
     pub(super) played: Tick,
-    /// For the first spans that end after `fin`, in order: the index, and the first tick whose input the sender lacks.
-    /// Other peers send the inputs of a span only if it is in this list, or newer than this view.
+    /// For up to 200 spans that end after `fin`, in ascending order: the index, and the first tick whose input the
+    /// sender lacks. Other peers send the inputs of a span only if the span is in this list, or began after the view of
+    /// this row.
     pub(super) have: Vec<(u16, Tick)>,
-    /// Bit for each voter from which a packet arrived recently.
+    /// Bit for each voter from which a packet arrived within `Timing::heard`.
     pub(super) hears: u64,
-    /// Peers without a vote from which a packet arrived recently, at most [`STRANGERS_MAX`].
+    /// Peers without a vote from which a packet arrived within `Timing::heard`, at most [`STRANGERS_MAX`].
     pub(super) hears_others: Vec<PeerId>,
     pub(super) connected: bool,
     pub(super) paused: bool,

@@ -13,7 +13,7 @@ const ADDRESSES_MAX: usize = 256;
 pub(super) struct StartState {
     pub(super) view: View,
     pub(super) addresses: Vec<(PeerId, Address)>,
-    /// Number of played ticks, all of them final.
+    /// Number of ticks that the game has played to reach `state`. All of them are final.
     pub(super) tick: Tick,
     pub(super) state: Vec<u8>,
 }

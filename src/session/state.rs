@@ -109,7 +109,7 @@ pub(super) struct Clock {
     pub(super) active: u64,
 }
 
-/// Pseudo-random numbers (SplitMix64) that spread ballots in time.
+/// Pseudo-random numbers (SplitMix64). They delay ballots, so that peers do not start ballots at the same time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Random(u64);
 
@@ -133,7 +133,7 @@ pub(super) const CHANGES_KEPT: u16 = 1024;
 /// The last decided changes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
-    /// Number of the view that the first change leads to.
+    /// Number of the view to which the first change of `list` leads.
     pub(super) first: u32,
     pub(super) list: Vec<Change>,
 }
@@ -153,8 +153,8 @@ impl Changes {
 }
 
 impl Session {
-    /// Creates a session from the first view of a match. This peer is one of the voters, or follows the match from the
-    /// first tick on without a vote. `me` must be random and new for each process. `seed` may be any number.
+    /// Creates a session from the first view of a match. This peer either is one of the voters, or follows the match
+    /// from the first tick on without a vote. `me` must be random and new for each process. `seed` may be any number.
     ///
     /// # Errors
     /// [`ConfigError`] if a parameter is out of its range.
@@ -221,8 +221,8 @@ impl Session {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer without a vote: this peer sends it changes and inputs, for 5 s and as long as packets of that peer
-    /// arrive. The caller of a joining peer attaches the peers that it knows.
+    /// Serves a peer without a vote: sends it rows, changes and inputs, until 5 s have passed since the last call and
+    /// since the last packet from the peer. At a peer that joins, the caller attaches the peers that it knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         if self.peers.has_room(id, &self.view, active) {
@@ -247,10 +247,11 @@ impl Session {
         self.wants.leave = true;
     }
 
-    /// Requests an end of the match after `ticks` ticks. This peer sends the request two seconds before that tick;
-    /// later calls have no effect. The request of one peer is enough and cannot be taken back, so make it when the
-    /// ticks that it depends on are [confirmed](Session::confirmed). If several requests are known when a majority
-    /// decides, the largest number counts. After the decision no peer gets a seat, and the end does not change.
+    /// Requests an end of the match after `ticks` ticks. This peer sends the request two seconds before that tick; from
+    /// then on, further calls have no effect. The request of one peer is enough and cannot be taken back, so make it
+    /// when the ticks that it depends on are [confirmed](Session::confirmed). If several requests are known when a
+    /// majority decides, the largest number counts. After the decision no peer gets a seat, and the end does not
+    /// change.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
@@ -271,8 +272,9 @@ impl Session {
     }
 
     /// Votes to remove a peer, which gets no seat while enough votes count. The vote of the
-    /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while this peer is a voter of the view. A peer
-    /// has at most eight votes. A ninth vote ends the oldest one, so that the peer of the oldest vote may return.
+    /// [tie-holder](View::tie_holder) is sufficient. A vote counts only while the peer that casts it is a voter of the
+    /// view. A peer has at most eight votes, including those of [`go_on_without`](Session::go_on_without). A ninth vote
+    /// replaces the oldest one, and the peer against which the oldest vote was cast may return.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
@@ -292,8 +294,8 @@ impl Session {
         self.role = role;
     }
 
-    /// Sets the bounds of the input delay in ticks. `most` is limited to [`DELAY_MAX`](super::DELAY_MAX), `least` to
-    /// `most`.
+    /// Sets the bounds of the input delay in ticks. `most` is limited to [`DELAY_MAX`](super::DELAY_MAX), and `least`
+    /// is limited to `most`.
     pub fn set_delay(&mut self, least: u16, most: u16) {
         self.config.delay_max = most.min(super::config::DELAY_MAX);
         self.config.delay_min = least.min(self.config.delay_max);

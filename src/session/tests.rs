@@ -1,4 +1,4 @@
-//! Encodings of packets, numbers and start states; damaged and forged packets.
+//! Tests of the encodings of packets, numbers and start states, and of damaged and forged packets.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

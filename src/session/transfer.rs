@@ -13,7 +13,7 @@ use super::view::has_bit;
 const WINDOW_MIN: u32 = 56;
 /// Largest window in chunks.
 const WINDOW_MAX: u32 = 960;
-/// Time between two requests in microseconds.
+/// Maximum time between two requests for chunks, in microseconds.
 const WANT_INTERVAL: u64 = 20_000;
 /// Number of received chunks after which the next request is sent early.
 const WANT_CHUNKS: u32 = 16;
@@ -44,7 +44,7 @@ impl Pinned {
     }
 }
 
-/// Whether a request with these fields reports a chunk as received.
+/// Whether a request ([`JoinPacket::Want`]) with these `masks` and this `next` reports chunk `index` as received.
 fn in_masks(masks: &[u64], next: u32, index: u32) -> bool {
     let Some(after) = index.checked_sub(next) else { return true };
     let word = usize::try_from(after / 64).ok().and_then(|word| masks.get(word));
@@ -85,7 +85,8 @@ impl Upload {
         self.next = next;
         self.window = window.min(WINDOW_MAX);
         self.cursor = next;
-        // The highest chunk that arrived since the previous request measures the round trip, if it was sent only once.
+        // The round trip is measured with the highest chunk that arrived since the previous request, if this chunk was
+        // sent only once.
         let end = next.saturating_add(self.window);
         let newest =
             (first..end).rev().find(|&index| self.has(index) && !in_masks(&masks_before, first, index));
@@ -129,8 +130,8 @@ impl Upload {
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the highest received chunk. The buffer grows as chunks arrive, because the announced length may
-    /// be wrong.
+    /// The bytes of the state up to the end of the highest received chunk. The buffer grows as chunks arrive, because
+    /// the announced length may be wrong.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,

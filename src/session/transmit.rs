@@ -26,7 +26,7 @@ pub(super) struct Outbox {
 /// Maximum number of packets waiting to be sent. The oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
 /// If a receiver lacks more than this number of a peer's inputs, other peers relay them even if the receiver hears that
-/// peer.
+/// peer (gets packets from it).
 const HELP_TICKS: Tick = 20;
 /// Interval, in row versions, at which a peer that has no vote or hears no quorum sends to all peers that it knows.
 const TRY_ROWS: u32 = 8;
@@ -34,26 +34,28 @@ const TRY_ROWS: u32 = 8;
 const INTERVAL_MAX: u64 = 100_000;
 /// Bytes of the sender's id before a foreign row.
 const ROW_ID_BYTES: usize = 4;
-/// Maximum number of packets at a time to a receiver that lacks more than [`HELP_TICKS`] inputs of a span.
+/// Maximum number of packets sent at once to a receiver that lacks more than [`HELP_TICKS`] inputs of a span.
 const BURST_MAX: usize = 4;
-/// Largest number of spans in a row, so that it fits in a packet. Further spans follow as the final ticks advance.
+/// Maximum number of spans that a [`Row`] lists, so that the row fits in a packet. Further spans are listed as the
+/// final ticks advance.
 const SPANS_LISTED: usize = 200;
 /// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
-/// Inputs of a span for a packet.
+/// A run: consecutive inputs of a span for a packet.
 struct Run<'a> {
     span: u16,
-    /// First tick whose input the receiver lacks, and the tick after the last input that this peer has.
+    /// First tick whose input the receiver lacks.
     lacks: Tick,
+    /// Tick after the last input that this peer has.
     until: Tick,
     start: Tick,
     inputs: &'a [u8],
 }
 
 impl Session {
-    /// Usual time between packets in microseconds: a tick, at most [`INTERVAL_MAX`]. Doubled with more than 16 peers,
-    /// tripled with more than 32.
+    /// Usual time between packets in microseconds: a tick, but at most [`INTERVAL_MAX`]. It is doubled with more than
+    /// 16 peers, and tripled with more than 32.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.taking_part() {
             0..=16 => 1,
@@ -134,7 +136,7 @@ impl Session {
         if now < self.outbox.next_at && !early {
             return;
         }
-        // New inputs are about to be issued, so the packets wait for them for at most one interval.
+        // If new inputs are about to be issued, the packets wait for them for at most one interval.
         if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
             return;
         }
@@ -155,8 +157,8 @@ impl Session {
         }
     }
 
-    /// Whether packets are sent to a peer. If this peer has no vote or hears no quorum, it occasionally sends to all
-    /// peers that it knows.
+    /// Whether packets are sent to a peer. If this peer has no vote or hears no quorum, every [`TRY_ROWS`]th row goes
+    /// to all peers that it knows.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());
@@ -189,7 +191,7 @@ impl Session {
         if let Some(row) = foreign.first().and_then(|remote| remote.row.as_ref()) {
             row.write(&mut first_row);
         }
-        // In every second packet, long runs leave room for a foreign row. A long run may leave no room for further
+        // In every second row version, long runs leave room for a foreign row. A long run may leave no room for further
         // runs, so the next packet begins with the first run that did not fit.
         let mut runs: Vec<_> = spans.filter_map(|span| self.run_for(to, span)).collect();
         rotate_to(&mut runs, |run| run.span >= to.next_span);
@@ -214,7 +216,7 @@ impl Session {
         is_behind
     }
 
-    /// Whether the row of `receiver` states that it hears `other`. The bits for voters count only if that row is in
+    /// Whether the row of `receiver` states that it hears `other`. The bits for voters count only if the row belongs to
     /// this view.
     fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
         let Some(row) = receiver.row.as_ref() else { return false };
@@ -235,10 +237,10 @@ impl Session {
         }
     }
 
-    /// The inputs of a span for the next packet. They begin with the oldest input that the receiver lacks. If the last
-    /// packet had no room for all inputs, they continue after it, unless the oldest input is assumed lost. Inputs of
-    /// another peer are relayed only if the receiver does not hear that peer or lacks many of its inputs. A receiver
-    /// that still downloads a state has no row, and gets no inputs.
+    /// The inputs of a span for the next packet. They begin with the oldest input that the receiver lacks, or continue
+    /// after the last packet if that packet had no room for all inputs. If the oldest input is assumed lost, they begin
+    /// with it again. Inputs of another peer are relayed only if the receiver does not hear that peer or lacks many of
+    /// its inputs. A receiver that still downloads a state has no row, and gets no inputs.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<Run<'_>> {
         let span = self.view.spans.get(index)?;
         let lacks = self.lacks(receiver, index);
@@ -252,7 +254,7 @@ impl Session {
             return None;
         }
         let number = u16::try_from(index).ok()?;
-        // A receiver drops inputs after a gap, so a lost run begins the series again.
+        // A receiver drops inputs after a gap. If a run is lost, the series therefore begins again.
         let patience = receiver.link.round_trip + 3 * self.outbox.interval;
         let goes_on = |resume: &&Resume| {
             let is_lost = resume.lacks == lacks && self.clock.active > resume.since.saturating_add(patience);
@@ -285,8 +287,8 @@ impl Session {
     }
 }
 
-/// Positions at which the next packet continues, for each span with inputs that did not fit in the last one. Without
-/// these positions, each packet would repeat the same inputs until the receiver acknowledges them.
+/// For each span with inputs that did not fit in the last packet, the position at which the next packet continues.
+/// Without these positions, each packet would repeat the same inputs until the receiver acknowledges them.
 fn next_resumes(before: &[Resume], runs: &[Run], ends: &[Tick], now: u64) -> Vec<Resume> {
     let waits = |resume: &&Resume| runs.iter().skip(ends.len()).any(|run| run.span == resume.span);
     let cut = runs.iter().zip(ends).filter(|(run, end)| **end < run.until).map(|(run, &tick)| {

@@ -28,13 +28,13 @@ pub struct Voter {
 /// The ticks in which a peer plays a seat: `from <= tick < until`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// Number of the player, below [`SEATS_MAX`].
+    /// Number of the seat, below [`SEATS_MAX`].
     pub seat: u8,
     /// Incarnation of the peer.
     pub owner: PeerId,
     /// Identity of the peer.
     pub key: Key,
-    /// Number of the view that began the span.
+    /// Number of the view in which the span was added.
     pub since: u32,
     /// First tick of the span.
     pub from: Tick,
@@ -71,7 +71,7 @@ pub(super) struct Change {
     pub(super) cut: Tick,
     /// First tick that is not played; `None` while no end is decided.
     pub(super) end: Option<Tick>,
-    /// Whether the first tick may be played.
+    /// Whether the match has begun, so that its first tick may be played.
     pub(super) begun: bool,
     /// Bit for each voter of the old view that leaves.
     pub(super) leaves: u64,
@@ -99,7 +99,7 @@ pub(super) struct Change {
 pub struct View {
     /// Number of the view, increased by 1 with each change.
     pub number: u32,
-    /// Whether enough seats were taken to begin.
+    /// Whether the match has begun. It begins when enough seats are taken.
     pub begun: bool,
     /// Cut of the last change. The ticks before it are final.
     pub cut: Tick,
@@ -160,7 +160,8 @@ impl View {
         members.map(|(_, voter)| self.weight(voter)).sum()
     }
 
-    /// Whether a set of voters (a bit for each index) has more than half of the weight. The casting vote excludes ties.
+    /// Whether a set of voters (a bit for each index) has more than half of the weight. Because of the casting vote of
+    /// the tie-holder, there are no ties.
     #[must_use]
     pub fn is_quorum(&self, set: u64) -> bool {
         2 * self.weight_of(set) > self.weight_of(u64::MAX)
@@ -172,22 +173,22 @@ impl View {
         self.end.unwrap_or(NEVER)
     }
 
-    /// Bit for each of the [`SEATS_MAX`] seats that no peer plays or is going to play.
+    /// Bit for each of the [`SEATS_MAX`] seats that no peer plays now and no peer is going to play.
     #[must_use]
     pub fn free_seats(&self) -> u64 {
         let taken = self.spans.iter().filter(|span| span.is_open());
         !taken.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// Bit for each seat that a peer plays or is going to play.
+    /// Bit for each seat that the peer plays or is going to play.
     #[must_use]
     pub fn seats_of(&self, id: PeerId) -> u64 {
         let own = self.spans.iter().filter(|span| span.is_open() && span.owner == id);
         own.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// Bit for each seat whose latest player up to `tick` is the peer. A seat that nobody has played by then counts for
-    /// its first player.
+    /// Bit for each seat whose latest player up to `tick` is the peer. If nobody has played the seat by then, its first
+    /// player counts instead.
     pub(crate) fn seats_at(&self, id: PeerId, tick: Tick) -> u64 {
         let (mut known, mut own) = (0, 0);
         for span in self.spans.iter().filter(|span| span.from < span.until) {
@@ -200,7 +201,7 @@ impl View {
         own
     }
 
-    /// The view after a change, or `None` if the change does not fit.
+    /// The view after a change, or `None` if the change is not valid for this view.
     pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
         let mut next = self.clone();
         next.number = self.number.checked_add(1)?;

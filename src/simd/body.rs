@@ -4,13 +4,13 @@ use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// Index of the ground, which represents all bodies that are not in the body list. Kernels never write to the ground.
-/// In the list of bodies that a constraint changes, the ground also replaces a body that no impulse changes, so that
-/// kernels skip this body.
+/// Index of the ground, which represents all bodies that are not in the body list. Kernels never write to the ground. A
+/// constraint has two pairs of indices: bodies to read, and bodies to write. In the second pair, the ground replaces a
+/// body that no impulse changes.
 pub(crate) const GROUND: u32 = 0;
 
-/// A body in the solver: two halves of 16 bytes, each of which the SIMD kernels load as a whole. A body that no impulse
-/// moves has mass fraction 0 in every row.
+/// A body in the solver: two halves of 16 bytes, each of which SIMD kernels load as a whole. In every row, a body that
+/// no impulse moves has the mass fraction 0.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(crate) struct SolverBody {
@@ -28,7 +28,7 @@ pub(crate) struct SolverBody {
 const _: () = assert!(size_of::<SolverBody>() == 32, "a solver body should be two halves of 16 bytes");
 
 impl SolverBody {
-    /// Sets the velocity, which must be in range.
+    /// Sets the velocity from the bits of three speeds, which the caller has limited to the range of velocities.
     #[inline(always)]
     pub(crate) fn set_motion(&mut self, x: i32, y: i32, spin: i32) {
         self.velocity = Vec2::new(Speed::from_bits(x), Speed::from_bits(y));

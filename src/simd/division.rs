@@ -1,6 +1,6 @@
 //! Scalar division, for the scalar backend and for vector backends that divide lane by lane.
 
-/// `1 / d`, rounded down, with 30 fraction bits. `d` is clamped to at least 1.
+/// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is clamped to at least 1.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,

@@ -2,7 +2,7 @@
 
 use super::{Machine, Vectors};
 
-/// Data that kernels process in [`WIDTH`](super::WIDTH) lanes with vectors, and in one lane without vectors. Without
+/// Data for kernels: for [`WIDTH`](super::WIDTH) lanes if the backend has vectors, and otherwise for one lane. Without
 /// vectors, arrays of integers would be slower than single integers, and would compile to several times as much code.
 #[derive(Clone, Debug)]
 pub(crate) enum Layout<W, S> {
@@ -28,7 +28,7 @@ impl<W, S: Default> Default for Layout<W, S> {
 }
 
 impl<W: Default, S: Default> Layout<W, S> {
-    /// Chooses the layout for a machine. A change of the layout empties the data.
+    /// Sets the layout for a machine. If the layout changes, the data is replaced by empty data.
     pub(crate) fn fit(&mut self, machine: Machine) {
         match (machine.vectors(), &mut *self) {
             (Some(new), Layout::Wide(_, vectors)) => *vectors = new,

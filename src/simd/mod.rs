@@ -46,7 +46,7 @@ pub(crate) const fn shift(fraction_bits: u32) -> i32 {
     fraction_bits as i32
 }
 
-/// Four numbers of a body, loaded together.
+/// Four numbers that kernels load together.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
 pub(crate) struct Quad(pub(crate) [i32; 4]);
@@ -102,8 +102,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     /// overflow 64 bits. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    /// [`Lanes::narrow_saturating`] with a shift per lane, 1 to 61, and without the mask. The magnitude of `a` is at
-    /// most 2^62.
+    /// [`Lanes::narrow_saturating`] with its own shift, 1 to 61, for each lane, and without the mask. The magnitude of
+    /// `a` is at most 2^62.
     fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
 
     /// The lowest 32 bits, as a signed number.
@@ -140,7 +140,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn to_array(a: Self::Wide) -> [i64; N];
     fn load_wide(from: &[i64; N]) -> Self::Wide;
 
-    /// Gathers the quads at several indices, transposed.
+    /// Loads the quads at the given indices, and transposes them like [`Lanes::transposed`].
     #[inline(always)]
     fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
         // `map` would not be inlined into functions with other target features.
@@ -154,7 +154,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
-    /// Scatters velocities to bodies, except those at [`GROUND`].
+    /// Writes a velocity to the body of each lane, except to [`GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: VelocityW<Self::Int>);
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: VelocityW<Self::Int>);
 }

@@ -8,7 +8,7 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::map;
 use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 
-/// Number of lanes. With twice as many, each number would take two vectors.
+/// Number of lanes. With eight lanes, one number for each lane would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
 /// NEON instructions. This file is compiled only for targets that have them.

@@ -12,7 +12,7 @@ pub(crate) fn prefetch<T>(of: &T) {
         // SAFETY: every processor of this architecture has the instruction, and the address is within the value.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) };
     };
-    // A plain loop, which the compiler unrolls.
+    // A `while` loop, because the compiler unrolls it.
     let mut offset = 0;
     while offset < size_of::<T>() {
         ask(offset);

@@ -6,7 +6,7 @@ use super::body::{GROUND, SolverBody};
 use super::{Ints, Lanes, Quad, VelocityW, division};
 use crate::math::{round_shift, saturate};
 
-/// Arrays of `M` numbers, which are the first `M` of `N` lanes. A store does not change the other lanes.
+/// Arrays of `M` numbers for the first `M` of `N` lanes. A store does not change the other lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scalar<const M: usize>;
 

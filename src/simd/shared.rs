@@ -8,8 +8,8 @@ use core::cell::Cell;
 ///
 /// The shared slices are the bodies of the solver (`Solver::sub_steps`), and the contacts of the state with their
 /// results (`ContactStore::new`). Each body is in at most one constraint of a colour, and is integrated by one thread.
-/// Each contact is written only by the thread that solves it. `new` is not `unsafe`, because each access, not the
-/// sharing, has to meet the condition.
+/// Each contact is written only by the thread that solves it. `new` is not `unsafe`, because it accesses no element:
+/// the condition applies to each later access.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {

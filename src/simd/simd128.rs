@@ -32,7 +32,7 @@ impl Simd128 {
     }
 }
 
-/// Number of lanes. With twice as many, each number would take two vectors.
+/// Number of lanes. With eight lanes, one number for each lane would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
 /// Two products per vector: lanes 0 and 1, lanes 2 and 3.
@@ -191,7 +191,7 @@ impl Lanes<WIDTH> for Simd128 {
 
     #[inline(always)]
     fn narrow_by(a: Products, shift: v128) -> v128 {
-        // There is no shift with a count per lane.
+        // WebAssembly has no shift with a count per lane.
         let mut shifts = Ints::ZERO;
         Self::store(shift, &mut shifts);
         Self::load(&Ints(<Scalar<WIDTH> as Lanes<WIDTH>>::narrow_by(Self::to_array(a), shifts.0)))
@@ -263,7 +263,8 @@ fn sign(a: v128) -> v128 {
     i32x4_shr(a, 31)
 }
 
-/// The result, or the limit with the sign of `toward` in lanes where `overflows` is negative.
+/// In lanes where `overflows` is negative, the smallest or largest `i32`, with the sign of `toward`. In other lanes,
+/// `result`.
 #[inline(always)]
 fn limited(result: v128, overflows: v128, toward: v128) -> v128 {
     let limit = v128_xor(sign(toward), i32x4_splat(i32::MAX));

@@ -1,4 +1,4 @@
-//! Every backend computes what the scalar backend does, on numbers of all sizes.
+//! Every backend gives the same results as the scalar backend, for numbers of all sizes.
 
 use super::*;
 use crate::math::Rng;
@@ -144,7 +144,8 @@ fn every_backend_divides_as_plain_integers_do() {
     let mut rng = Rng::new(2);
     for round in 0..200_000u32 {
         let divisors = core::array::from_fn(|lane| match lane {
-            // Powers of two, exact quotients, and the numbers next to both.
+            // Lanes 0 to 3: powers of two, and the largest divisors `d` for which `2^60 / d` is at least a given whole
+            // number; each of them also plus or minus one.
             0 | 1 => (1i64 << (round % 47).max(1)) + i64::from(rng.below(3)) - 1,
             2 | 3 => (1i64 << 60) / (i64::from(rng.below(1 << 30)) + 1) + i64::from(rng.below(3)) - 1,
             _ => i64::from(rng.next_u32()) << 14 >> rng.below(46),

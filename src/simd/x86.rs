@@ -41,7 +41,7 @@ impl Vectors {
         avx2.into_iter().chain(wide.then_some(Backend::Avx512))
     }
 
-    /// The vectors of a backend, which the processor must have.
+    /// The vectors of AVX2 or AVX-512, which the processor must have; `None` for other backends.
     #[inline]
     pub(super) fn of(backend: Backend) -> Option<Self> {
         match backend {

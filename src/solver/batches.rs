@@ -71,7 +71,7 @@ pub(super) struct Batches<K: BatchKind, const N: usize> {
     pub(super) records: Vec<K::Record<N>>,
     /// One extra for each batch that has one, in the order of the batches.
     pub(super) extras: Vec<K::Extra<N>>,
-    /// The end of each colour. The overflow counts as one colour.
+    /// For each colour, the numbers of batches and extras up to its end. The overflow counts as one colour.
     colour_ends: Vec<ColourEnd>,
 }
 
@@ -139,8 +139,8 @@ impl<K: BatchKind> BatchShare<'_, K> {
         }
     }
 
-    /// Runs an operation over the overflow, if this thread solves the overflow. Waits for the other threads if there is
-    /// an overflow.
+    /// Runs an operation over the overflow, if it belongs to this thread. If there is an overflow, all threads wait
+    /// until it has been solved.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match &mut self.overflow {
             None => return,

@@ -12,7 +12,7 @@ impl SolverBody {
         SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
     }
 
-    /// Sets the velocity. Clamps every component to [`SPEED_MAX`].
+    /// Sets the velocity. Clamps every component to ±[`SPEED_MAX`], and counts each clamp as a fault.
     #[inline]
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);

@@ -45,7 +45,7 @@ impl BodyFacts {
 /// conversion from a length to a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
-    // `c` is below 2^31.5, so its product with a mantissa is below 2^63.
+    // The bits of `c` are below 2^31.5 and those of a mantissa are below 2^31, so their product is below 2^63.
     let c = round_shift(wide(x) * wide(n_y) - wide(y) * wide(n_x), Ratio::FRAC_NBITS);
     let e = round_shift(c * wide(mantissa), shift.unsigned_abs());
     let limit = wide(RATIO_MAX.to_bits());

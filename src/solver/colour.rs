@@ -11,15 +11,15 @@ use alloc::vec::Vec;
 
 use super::body_list::GROUND;
 
-/// Largest number of colours. More colours would be nearly empty. Constraints that fit no colour, such as most contacts
-/// of a drum with hundreds of boxes, are the overflow.
+/// Maximum number of colours. More colours would be nearly empty. Constraints that fit no colour form the overflow: for
+/// example most contacts of a drum (one body) that is filled with hundreds of boxes.
 const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Node {
-    /// Constraints are coloured bucket by bucket.
+    /// The highest bits of a hash of the key. Constraints are coloured in the order of their buckets.
     bucket: u8,
     size: Size,
     /// Whether the constraint gets more iterations (`COLD_ROUNDS`).
@@ -66,10 +66,10 @@ pub enum SolverColour {
     Overflow,
 }
 
-/// The constraints of a colour that one thread solves.
+/// The constraints of one colour that belong to one thread.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group<'a> {
-    /// Indices of the constraints, large ones first.
+    /// Indices of the constraints. The first `large` ones are large, the others are small.
     pub(super) indices: &'a [u32],
     pub(super) large: usize,
 }
@@ -79,8 +79,8 @@ impl<'a> Group<'a> {
         Group { indices, large: 0 }
     }
 
-    /// Splits into batches of up to `N` constraints of one size. Small constraints fill up the last batch of large
-    /// ones, if `mixes` holds for all constraints of the filled batch.
+    /// Splits the group into batches of up to `N` constraints of one size. The last batch of large constraints is
+    /// filled up with small ones, if `mixes` holds for all constraints of the filled batch.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,
@@ -111,7 +111,7 @@ pub(super) struct Colouring {
     /// For each constraint, its place in the order: see [`place_of`].
     places: Vec<u8>,
     order: Vec<u32>,
-    /// For each rank, the end of its constraints in the order.
+    /// For each rank (see [`Ranks`]), the end of its constraints in `order`.
     ends: Vec<u32>,
     colour_count: u8,
     ranks: Ranks,
@@ -225,9 +225,9 @@ impl Ranks {
         2 * (1 + 2 * usize::from(COLOURS_MAX) * self.parts)
     }
 
-    /// The thread that solves a constraint. The bodies are divided evenly among the threads, by index, and the thread
-    /// of one of the two bodies solves the constraint. If the first body always decided, the first thread would get
-    /// most constraints of a mixed heap.
+    /// The thread that solves a constraint. The bodies are divided evenly among the threads, by index. The constraint
+    /// belongs to the thread of the first body if the difference of the two indices is even, and otherwise to that of
+    /// the second body. If the first body always decided, the first thread would get most constraints of a mixed heap.
     fn part_of(self, node: &Node) -> usize {
         let body = match node.bodies {
             [GROUND, body] | [body, GROUND] => body,
@@ -252,7 +252,8 @@ impl Ranks {
 /// Number of places of warm constraints. The places of cold constraints follow.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
-/// The place in the order of a single thread: the overflow, then the large and the small constraints of each colour.
+/// The place in the order of a single thread: 0 for the overflow, then one place for the large and one for the small
+/// constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {

@@ -27,7 +27,7 @@ use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, Velocity
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
-    /// Whether the tick has had a sub-step before, so that its velocity changes can be measured.
+    /// Whether the tick has already had a sub-step, whose velocity changes can be measured.
     known: bool,
     /// Whether any group of any thread is shared ([`PushedBody::shared`]).
     pub(super) shared: bool,
@@ -89,7 +89,7 @@ impl ContactVelocities {
         core::mem::replace(&mut self.known, true)
     }
 
-    /// Runs `change`, whose velocity changes do not count as changes by contacts.
+    /// Runs `change`. The velocity changes that it makes do not count as changes by contacts.
     pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
         if self.shared {
             self.perform(Task::Suspend, context);

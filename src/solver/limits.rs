@@ -5,11 +5,11 @@
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::{Fx, Speed, Vec2, round_shift, saturate, saturate_wide};
 
-/// Number of results that a clamp has changed. The state of the world contains the sum over all ticks.
+/// Number of results that were clamped. The state of the world contains the sum over all ticks.
 pub(crate) type Faults = u64;
 
-/// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. A larger impulse of
-/// a point block is shortened. In a hinge, each of its components is clamped.
+/// Largest impulse, in m/s, that is applied at once. Rows apply a larger impulse in several steps. Point blocks shorten
+/// a larger impulse, and hinges clamp each of its components.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");

@@ -112,7 +112,8 @@ impl Solver {
         self.list.body(slot)
     }
 
-    /// Makes the constraints of the joints in the given slots, except the blocks ([`Self::prepare_blocks`]).
+    /// Makes the constraints of the joints in the given slots. [`Self::prepare_blocks`] then makes those of joints in
+    /// blocks.
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,

@@ -11,7 +11,7 @@ use crate::simd::{Lanes, VelocityW};
 pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
 pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 
-/// 512 m/s in the format of speeds, whose range is ±1024 m/s.
+/// 512 m/s in units of [`Speed`](crate::math::Speed): half of the range of the format, which is ±1024 m/s.
 pub(super) const HALF: i32 = 1 << 30;
 
 /// The velocities of two bodies in each lane.

@@ -19,15 +19,15 @@
 //! `L` accumulates over the iterations, and `p` is the impulse times the sum of the inverse masses. For a rigid block
 //! (`s = 1`), `L` is the change of the relative velocity of the anchors.
 //!
-//! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`. With
-//! `K1`, which is `K` of the rigid block, the equation `(impulseScale I + massScale K1) p = -massScale v - push` is the
-//! implicit step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. A
-//! spring that yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions
-//! of the arms. Such a spring has no potential, and feeds energy into bodies that turn.
+//! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`. Let `K1`
+//! be `K` of the rigid block. The equation `(impulseScale I + massScale K1) p = -massScale v - push` is then the
+//! implicit step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. If `d`
+//! contained `impulseScale L` instead of `impulseScale p`, the stiffness would be `omega^2 m K1^-1`, which depends on
+//! the directions of the arms. Such a spring has no potential, and feeds energy into bodies that turn.
 //!
-//! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
-//! Carrying over the impulse `p = G L` instead would multiply that part by up to `|e|^2`: on a rod 40 radii of gyration
-//! long, this added 1100 m/s. Two scalar rows instead of the block would gain energy in a swinging chain.
+//! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm. If
+//! `p = G L` were carried over instead, that part would be multiplied by up to `|e|^2`: on a rod 40 radii of gyration
+//! long, this added 1100 m/s. If two scalar rows replaced the block, a swinging chain would gain energy.
 //!
 //! **The bias pass of a hinge measures along the chord.** Displacements are straight while arms turn, which opens the
 //! joint by about half the length of an arm times the square of its rotation. The velocity is therefore measured with
@@ -39,9 +39,10 @@
 //! ```
 //!
 //! The impulse still acts along the arm at the start of the sub-step, and therefore dissipates no energy (the position
-//! constraint of RATTLE, H. Andersen 1983). `M` compensates for the softness, because a soft joint yields to the
-//! centrifugal force. The relax pass measures with the arm at the new pose. Hinges solve these equations in batches
-//! (`joint/hinge`). Springs and motors between points (`joint/point`) measure with the arm at the current pose.
+//! constraint of RATTLE, H. Andersen 1983). The factor `M` compensates for a part of the softness, because a soft joint
+//! yields to the centrifugal force. The relax pass measures with the arm at the new pose. Hinges solve these equations
+//! in batches (`joint/hinge`). Springs and motors between points (`joint/point`) measure with the arm at the current
+//! pose in both passes.
 
 #[cfg(test)]
 mod tests;
@@ -144,8 +145,8 @@ impl PointBlock {
     /// Changes the velocities by a change `d` of `L`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
-        // Sums of two products have 51 fraction bits, and at most 61 bits: gains are at most 1, and impulses at most
-        // 512.
+        // Sums of two products have 51 fraction bits. As bits they are at most 2^61, because gains are at most 1 and
+        // impulses at most 512 m/s.
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
             times(x, d.x) + times(y, d.y)
@@ -162,7 +163,7 @@ impl PointBlock {
 
     /// `p = G L`, in units of [`Speed`].
     fn impulse(&self, lambda: [i64; 2]) -> [i64; 2] {
-        // `G` is `GA + GB`.
+        // `G` is `GA + GB`, because the mass fractions add up to 1.
         let ([a_x, a_y], [b_x, b_y]) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
         [a_x.saturating_add(b_x), a_y.saturating_add(b_y)]
     }
@@ -171,7 +172,7 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// Solves a rigid block for one iteration, measuring with the given lever ratios.
+    /// Solves a rigid block for one iteration. Velocities are measured with the given lever ratios.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(

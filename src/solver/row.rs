@@ -8,7 +8,7 @@
 //! e = c / k                                            lever ratio
 //! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that no impulse moves
 //! D  = aA (1 + eA^2) + aB (1 + eB^2)                   1 or more
-//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2 (in coupled rows 4.1 and 2)
+//! g  = a / D,  f = g e                                 gains: g <= 1, |f| <= 1/2 (in coupled rows: 4.1 and 2)
 //!
 //! vn = n.(vB - vA) + eB uB - eA uA
 //! d  = -massScale (vn + bias) - impulseScale L
@@ -38,7 +38,7 @@ use crate::math::{
     saturate_wide,
 };
 
-/// The share of each body in a change of the relative velocity.
+/// The share of each body in the change of the relative velocity by an impulse through both centres of mass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MassFractions {
     pub(crate) a: Unit,
@@ -51,14 +51,15 @@ impl MassFractions {
         Self::of_masses(mass(a), mass(b))
     }
 
-    /// The fractions for masses in kg. The mass is 0 for a body that no impulse moves. `mA / (mA + mB)` of inverse
-    /// masses is `MB / (MA + MB)` of masses.
+    /// The fractions for masses in kg, where 0 is the mass of a body that no impulse moves. With masses `M` and inverse
+    /// masses `m`, `mA / (mA + mB)` equals `MB / (MA + MB)`.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
             (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {
                 let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
-                // Masses are below 2^62. With the sum reduced to 32 bits there is room for 30 fraction bits.
+                // As bits, masses are below 2^62. The sum is reduced to 32 bits, so that a mass still fits 64 bits when
+                // it is shifted up by the 30 fraction bits of the result.
                 let excess = (64 - (mass_a + mass_b).leading_zeros()).saturating_sub(32);
                 let (mass_a, mass_b) = (mass_a >> excess, mass_b >> excess);
                 let bits = (mass_b << 30) / (mass_a + mass_b);
@@ -72,8 +73,8 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits, at most 2^14. If `a e` were rounded first, `e'` would multiply the rounding error by
-/// up to 2^7.
+/// `a e e'` with 30 fraction bits. The value is below 2^14. If `a e` were rounded first, `e'` would multiply the
+/// rounding error by up to 2^7.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());
@@ -104,7 +105,7 @@ pub(crate) struct Row {
     n_b: Vec2<Unit>,
     e_a: Ratio,
     e_b: Ratio,
-    /// With 30 fraction bits.
+    /// Gains with 30 fraction bits. They need 64 bits, because a coupled row may have a gain of 4.1.
     g_a: i64,
     g_b: i64,
     f_a: Unit,
@@ -180,7 +181,8 @@ impl Row {
     }
 
     /// `nB.vB - nA.vA + eB uB - eA uA` in the format of speeds. `linear` is the sum of the first two terms, with 30
-    /// more fraction bits. It stays below 2^63, because speeds are below 2^30 units and directions at most 2 long.
+    /// more fraction bits. As bits, `linear` is below 2^63, because speeds are below 2^30 and directions at most 2
+    /// long.
     #[inline]
     fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)
@@ -271,14 +273,14 @@ impl Row {
     }
 }
 
-/// `L = p D`, where `p` was computed with an earlier `D`. The result is only an initial guess, so clamping it is no
-/// fault.
+/// `L = p D`, where `p` was computed with an earlier `D`. The result is only an initial guess, so clamping it does not
+/// count as a fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }
 
-/// `p = L / D`: the impulse times the sum of the inverse masses. It does not depend on the lever arms.
+/// `p = L / D`: the impulse times the sum of the inverse masses. Unlike `L`, it does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
     let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))

@@ -16,7 +16,7 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 /// let contact = ContactTuning::Soft { hertz: fx!(5), damping_ratio: fx!(1), push_speed: fx!(3) };
 /// let solver = SolverSettings { contact, ..SolverSettings::default() };
 /// assert!(World::new(Config { solver, ..Config::default() }).is_ok());
-/// // A setting that is out of range is named.
+/// // A setting out of range is an error that names the setting.
 /// let contact = ContactTuning::Soft { hertz: fx!(-1), damping_ratio: fx!(1), push_speed: fx!(3) };
 /// let solver = SolverSettings { contact, ..SolverSettings::default() };
 /// assert!(World::new(Config { solver, ..Config::default() }).is_err());
@@ -25,9 +25,9 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 pub enum ContactTuning {
     /// Stiff damped springs, followed by a relax pass that removes the push-out velocity.
     Soft {
-        /// Stiffness in Hz, 1 to 1000, limited to an eighth of the sub-step rate. Doubled against bodies that are not
-        /// dynamic. A stack sinks in proportion to `g / hertz^2`: see [`Config`](crate::world::Config) for small
-        /// bodies.
+        /// Stiffness in Hz, 1 to 1000, limited to an eighth of the sub-step rate. Contacts with a body that is not
+        /// dynamic have twice this stiffness. A stack sinks in proportion to `g / hertz^2`: see
+        /// [`Config`](crate::world::Config) for small bodies.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
         damping_ratio: Fx,
@@ -74,8 +74,8 @@ pub struct SolverSettings {
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
     /// Stiffness in Hz, 1 to 1000, of joints that have no [softness of their own](crate::solver::JointDef::softness),
-    /// limited to a quarter of the sub-step rate. Doubled for the anchors of a hinge, or of a weld with rigid anchors,
-    /// if one body has no other joint and the other body is not dynamic.
+    /// limited to a quarter of the sub-step rate. The anchors of a hinge, or of a weld with rigid anchors, have twice
+    /// this stiffness if one body has no other joint and the other body is not dynamic.
     pub joint_hertz: Fx,
     /// Damping ratio, 0 to 100, of joints that have no softness of their own.
     pub joint_damping_ratio: Fx,
@@ -163,7 +163,8 @@ pub(crate) struct Tuning {
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
     pub(crate) joint: Softness,
-    /// Softness of the anchors of hinges between a body without another joint and a body that impulses do not move.
+    /// Softness of the anchors of anchored hinges, which connect a body without another joint to a body that impulses
+    /// do not move.
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) speed_max: Speed,

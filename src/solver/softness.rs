@@ -27,7 +27,7 @@ impl Softness {
     pub(crate) const RIGID: Self =
         Softness { bias_rate: Rate::ZERO, mass_scale: Unit::ONE, impulse_scale: Unit::ZERO };
 
-    /// Solves the velocity exactly and removes the position error at a rate per second.
+    /// Solves the velocity exactly, and removes a position error `x` at the speed `bias_rate x`.
     pub(crate) const fn rigid_with_rate(bias_rate: Rate) -> Self {
         Softness { bias_rate, ..Self::RIGID }
     }
@@ -70,9 +70,9 @@ impl Softness {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
-    /// The negated part of a spring's impulse that comes from its stretch: `massScale biasRate x`, about `h omega^2 x`.
-    /// The product is rounded to a [`Speed`] at the end, because the bias rate times a long stretch does not fit a
-    /// [`Speed`].
+    /// The negated part of a spring's impulse that comes from a stretch of `x` metres: `massScale biasRate x`, about
+    /// `h omega^2 x`. Only the whole product is rounded to a [`Speed`], because the bias rate times a long stretch does
+    /// not fit a [`Speed`].
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(self.push_wide(stretch))
     }
@@ -81,7 +81,8 @@ impl Softness {
         fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into())
     }
 
-    /// Like [`Self::push`], along the direction of `stretch`, with components of at most `most`, in units of [`Speed`].
+    /// Like [`Self::push`], but for a stretch with a direction. Components are at most `most` m/s, in units of
+    /// [`Speed`].
     pub(crate) fn push_along(&self, stretch: Vec2<Fx>, most: Fx) -> [i64; 2] {
         // The product of the bias rate and a longer stretch would overflow.
         let longest = Fx::MAX / (i64::from(self.bias_rate.to_num::<i32>()) + 1);

@@ -3,8 +3,8 @@
 use core::hint;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Number of spins, some microseconds, after which a waiting member yields: the member that it waits for may need the
-/// processor.
+/// Number of spins after which a waiting member yields. They take some microseconds. The member yields because another
+/// member, for which it waits, may need the processor.
 const SPINS: u32 = 100;
 
 /// Lets `count` members wait for each other, any number of times.
@@ -53,8 +53,8 @@ impl Barrier {
     }
 }
 
-/// Breaks the barrier when it is dropped, as in a panic. A member that finishes its work passes its guard to
-/// `mem::forget`, so that the guard is not dropped.
+/// Breaks the barrier when it is dropped, as by a panic. A member that finishes its work passes its guard to
+/// `mem::forget`, so that the barrier stays intact.
 pub(super) struct Guard<'a>(pub(super) &'a Barrier);
 
 impl Drop for Guard<'_> {

@@ -83,8 +83,8 @@ impl Mode {
 mod tests {
     use super::*;
 
-    /// Runs ticks that take `alone` or `team` milliseconds, by their mode. Returns the number of ticks with all
-    /// threads.
+    /// Records ticks that take `alone` milliseconds on the calling thread, or `team` milliseconds on all threads.
+    /// Returns the number of ticks on all threads.
     fn run(pace: &mut Pace, ticks: u32, alone: u64, team: u64) -> u32 {
         let mut shared = 0;
         for _ in 0..ticks {
@@ -119,7 +119,7 @@ mod tests {
         assert!(shared >= 90, "{shared}");
     }
 
-    /// A single tick that takes long does not end the sharing for long.
+    /// After a single slow tick, the threads soon share ticks again.
     #[test]
     fn an_interruption_is_forgotten() {
         let mut pace = Pace::new();

@@ -1,4 +1,4 @@
-//! The calling thread and the threads of a pool.
+//! A team: the calling thread and the threads of a pool.
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -12,8 +12,8 @@ use super::{Member, Sharing};
 /// Number of polls after which a thread without work yields.
 const LOOKS: u32 = 1000;
 
-/// Number of spins after a stage, while the other threads return from its last barrier. Without these spins, the
-/// calling thread would go to sleep, and waking it would take 50 microseconds.
+/// Number of spins of the calling thread at the end of [`Team::run`], while the other threads return from the last
+/// barrier. Without these spins, the calling thread would go to sleep, and waking it would take 50 microseconds.
 const RETURN_SPINS: u32 = 100;
 
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Team {
     turn: Mutex<Option<Pace>>,
 }
 
-/// Ends the tick for the other threads, even if the calling thread panics.
+/// Tells the other threads that the tick is over, even if the calling thread panics.
 struct TickEnd<'a>(&'a AtomicBool);
 
 impl Drop for TickEnd<'_> {

@@ -16,7 +16,7 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// stiffness in Hz is at most an eighth of the sub-step rate. With 60 ticks per second and gravity of 10 m/s²,
 /// [`Config::for_smallest`] gives:
 ///
-/// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
+/// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by (share of a box) |
 /// |---|---|---|---|---|
 /// | 0.9 m and more | 4 (default) | 30 Hz (default) | 1.8 to 2 cm (default) | at most 2.5 % |
 /// | 0.3 m | 7 | 52.5 Hz | 6 mm | 2.2 % |
@@ -92,8 +92,8 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance. They cease to
-    /// touch beyond the speculative distance. The difference keeps a wobbling contact from beginning and ending
+    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance. Touching shapes
+    /// cease to touch only beyond the speculative distance, so that a wobbling contact does not begin and end
     /// repeatedly.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
@@ -131,8 +131,8 @@ impl Config {
     /// ```
     #[must_use]
     pub fn for_smallest(mut self, size: Fx) -> Self {
-        // 8 boxes sink by 1.96 % (30 Hz / f)^2 (g / 10 m/s^2) / (size / 1 m) with the stiffness `f`, an eighth of the
-        // sub-step rate. For 2.4 %, the square of the rate is 4800 g / size.
+        // A stack of 8 boxes sinks by 1.96 % of a box times (30 Hz / f)^2 (g / 10 m/s^2) / (size / 1 m). The stiffness
+        // `f` is an eighth of the sub-step rate, so for 2.4 % the square of the rate is 4800 g / size.
         let size = size.max(fx!(0.001));
         let squared = fx_div(fx_mul(fx!(4800), self.gravity.length()), size).unwrap_or(Fx::MAX);
         let needed = sqrt(squared).unwrap_or(Fx::ZERO).ceil().to_num::<u32>();
@@ -145,7 +145,7 @@ impl Config {
                 *hertz = Fx::from_num(self.tick_rate.saturating_mul(solver.sub_steps).min(RATE_MAX)) / 8;
             }
         }
-        // The default of 2 cm is a fiftieth of a box of 1 m.
+        // The default of 2 cm is a fiftieth of 1 m, so boxes of 1 m and more keep it.
         self.speculative_distance = self.speculative_distance.min((size / 50).max(SPECULATIVE_DISTANCE_MIN));
         self
     }

@@ -18,8 +18,8 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// let lava = world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
 /// let victim = world.spawn(&BodyDef::dynamic(), &[square, square])?;
 /// world.step();
-/// // Removes every body that touches the lava. All events are read before the world is changed, and a body of several
-/// // shapes can have several events.
+/// // Removes every body that touches the lava. All events are read before the first removal. They are read into a
+/// // set, because several shapes of one body may touch the lava.
 /// let other = |event: &ContactEvent| {
 ///     let pair = event.shapes().map(|shape| world.body_of(shape));
 ///     let is_lava = |body: &_| *body == Some(lava);
@@ -250,7 +250,7 @@ pub struct Events {
 /// # let plate = ShapeDef::new(Polygon::square(fx!(1))?).sensor();
 /// # world.spawn(&BodyDef::fixed(), &[plate])?;
 /// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
-/// // A pressure plate counts what is on it, here while something falls through it.
+/// // A pressure plate counts the shapes on it, here while a ball falls through it.
 /// let (mut count, mut most) = (0, 0);
 /// for _ in 0..120 {
 ///     world.step();

@@ -3,7 +3,7 @@
 //! | folder | content |
 //! |---|---|
 //! | `step` | one tick, one file for each stage |
-//! | `edit` | changes between ticks, such as creating, removing, setters, forces and commands |
+//! | `edit` | changes between ticks: creation, removal, setters, forces, commands |
 //! | `query` | rays, casts, overlaps, characters |
 //! | `view` | read-only views of contacts, joints, islands and the surroundings of a body; the cost of a tick |
 //! | `snapshot` | saving, restoring, bytes, digests, validation |
@@ -80,7 +80,7 @@ use state::State;
 pub struct World {
     state: HashedState,
     scratch: Scratch,
-    /// Digests after each phase, if recorded.
+    /// Digests of the state after each phase of a tick, if they are recorded.
     phases: Option<PhaseLog>,
 }
 

@@ -11,22 +11,22 @@ use crate::fx;
 use crate::math::{Fx, Rng, fx_div};
 use crate::solver::Joint;
 
-/// Bodies that sleep and wake together.
+/// Bodies that fell asleep together and wake together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Island {
     /// Slots of the bodies, sorted.
     pub(crate) bodies: Vec<u32>,
 }
 
-/// A pair of shapes, as events report it.
+/// A pair of shapes, in the form in which events report it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
-    /// The sensors of the pair: see [`State::sensor_of`].
+    /// Which shapes are sensors: see [`State::sensor_of`].
     pub(crate) sensor: Option<Side>,
 }
 
-/// Sensors of a pair. Two sensors may detect each other.
+/// The shape of a pair that is a sensor, or both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Side {
     A,
@@ -34,8 +34,9 @@ pub(crate) enum Side {
     Both,
 }
 
-/// All state that influences later ticks, and the names and numbers that games store. The code of snapshots and hashes
-/// destructures `State` without `..`, so a new field causes compile errors until both handle the field.
+/// All state that influences later ticks, and the names and numbers that games store with objects. The code of
+/// snapshots and hashes destructures `State` without `..`, so a new field causes compile errors until it is saved and
+/// hashed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
@@ -75,7 +76,7 @@ impl State {
         }
     }
 
-    /// Sizes the page caches. Called once for a new or decoded state.
+    /// Gives the page caches the size of the arenas. Must be called once for each new or decoded state.
     pub(crate) fn keep_pages(&mut self) {
         self.bodies.keep_pages();
         self.shapes.keep_pages();
@@ -104,7 +105,8 @@ impl State {
         }
     }
 
-    /// The mass that a force between two bodies accelerates: `mA mB / (mA + mB)` in kg.
+    /// The reduced mass of the bodies of a pair in kg: `mA mB / (mA + mB)`. A body without mass counts as infinitely
+    /// heavy. 0 if neither body has mass.
     pub(crate) fn reduced_mass(&self, shapes: Pair) -> Fx {
         let (a, b) = self.bodies_of(shapes);
         match (a.has_mass(), b.has_mass()) {
@@ -124,7 +126,8 @@ impl State {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// Sensors of a pair that may touch. If both shapes are sensors, a sensor counts only if it detects the other.
+    /// Which shapes of a pair are sensors; `None` if both are solid. If both are sensors, the result is those that
+    /// detect the other. The pair must be allowed to have a contact, so that at least one does.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {
@@ -150,7 +153,7 @@ impl State {
         self.sensor_of(pair).is_none() || self.has_area(pair)
     }
 
-    /// The pair as events report it; `None` if the pair has neither a sensor nor a shape with contact events.
+    /// The pair in the form in which events report it; `None` if no shape of it is a sensor or has contact events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;
         let sensor = self.sensor_of(contact.shapes);

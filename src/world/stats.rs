@@ -64,7 +64,7 @@ pub struct StepStats {
     pub joints: u32,
     /// Number of pairs of shapes: see [`World::pair_count`](super::World::pair_count).
     pub pairs: u32,
-    /// Number of pairs with contact points. Sensors do not count.
+    /// Number of pairs with contact points. Pairs with a sensor do not count.
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
@@ -73,12 +73,14 @@ pub struct StepStats {
     /// Number of contact points that had an impulse in the previous tick and are gone, although their shapes still
     /// touch.
     pub points_lost: u32,
-    /// Number of pairs of shapes that a cached separating axis of an earlier tick still separates.
+    /// Number of pairs of shapes that are known to be apart because the separating axis of an earlier tick still
+    /// separates them.
     pub axis_hits: u32,
-    /// Number of full separating axis tests.
+    /// Number of pairs of shapes for which separating axes were searched, because no cached axis separated them.
     pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,
-    /// Number of results that a clamp has changed, plus 1 if [`super::Config::pair_limit`] left pairs out.
+    /// Number of results that were out of range and were clamped, plus 1 if [`super::Config::pair_limit`] left pairs
+    /// out.
     pub faults: u64,
 }

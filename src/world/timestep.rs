@@ -12,7 +12,8 @@
 pub struct FixedTimestep {
     tick_rate: u32,
     ticks_max: u32,
-    /// Time that is not yet simulated: nanoseconds multiplied by the tick rate, so that no division rounds the time.
+    /// Time that is not yet simulated, in nanoseconds times the tick rate. In this unit a tick is always 10^9, so no
+    /// division rounds the time.
     remainder: u64,
 }
 
@@ -30,8 +31,8 @@ impl FixedTimestep {
         FixedTimestep { tick_rate, ticks_max: Self::DEFAULT_TICKS_MAX, remainder: 0 }
     }
 
-    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Further ticks are dropped,
-    /// so that a slow machine does not fall behind without limit.
+    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Ticks beyond this number
+    /// are dropped: on a machine that is too slow, the game then runs slower instead of falling behind ever further.
     #[must_use]
     pub const fn ticks_max(mut self, ticks: u32) -> Self {
         self.ticks_max = ticks;

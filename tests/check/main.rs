@@ -1,4 +1,4 @@
-//! Games with a planted fault fail the check in the variant for this kind of fault.
+//! A game with a planted fault fails the check, and the failure names the variant that is meant for this kind of fault.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
 #[expect(unreachable_pub, reason = "the file is a library in its own package")]

@@ -89,7 +89,7 @@ impl Game for Pit {
     }
 }
 
-/// Inputs of 60 ticks with a kick in tick 31.
+/// Inputs of 60 ticks with a kick in the 31st tick (index 30).
 fn inputs() -> Vec<Vec<bool>> {
     (0..60).map(|tick| vec![tick == 30]).collect()
 }
@@ -121,7 +121,8 @@ fn who_reads_what_is_no_state_is_found() {
     }
 }
 
-/// The report names the body and its velocity. The minimised log has a kick and a tick in which the lost wind matters.
+/// The report names the body and its velocity. The minimised log has two ticks: one with a kick, and one in which the
+/// wind of the kick is missing after a reload.
 #[test]
 fn the_body_and_the_field_are_named() {
     let options = CheckOptions::default().only(&[Variant::Again, Variant::Reloaded]);
@@ -134,7 +135,8 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
-/// A rollback from the tick of the kick to an earlier tick keeps the wind of the later tick.
+/// Wind is not saved, so a rollback from the tick of the kick to an earlier tick keeps the wind. The state then differs
+/// from the original run in a tick before the kick.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();

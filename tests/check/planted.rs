@@ -189,8 +189,8 @@ fn a_replay_contains_the_tick_that_exceeds_a_limit() {
     }
 }
 
-/// A long log is played again several times to measure how often it fails. These runs leave enough of the work budget
-/// for the minimisation.
+/// If a log fails, the check plays it several more times, to measure how often it fails. With a long log, these runs
+/// must leave enough of the work budget for the minimisation.
 #[test]
 fn an_early_fault_of_a_long_log_is_minimised() {
     let mut inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
@@ -201,7 +201,7 @@ fn an_early_fault_of_a_long_log_is_minimised() {
     assert!(failure.ticks <= 5, "{failure}");
 }
 
-/// The reference run exceeds the limit, even if nothing is recorded.
+/// The run without any variant already exceeds the work limit, so the fault is not reported as one of the recording.
 #[test]
 fn a_limit_that_is_exceeded_is_not_called_a_fault_of_the_recording() {
     let options = CheckOptions::default().only(&[]);

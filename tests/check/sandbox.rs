@@ -6,7 +6,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{LimitKind, Limits, Step, Verdict, VerifiedReplay, verify};
 use lockstep2d::report::{CompareError, Evidence, bisect};
 
-/// Largest number of shapes of a tested scene. All variants of a scene together take as long as twenty runs of it.
+/// Scenes with more shapes are not tested, because all variants of a scene together take as long as twenty runs of it.
 const SHAPES_MAX: usize = 300;
 
 #[test]
@@ -43,7 +43,7 @@ fn random_commands_pass() {
     }
 }
 
-/// `tick_work` also limits work that is charged while a tick is simulated.
+/// `tick_work` also limits work that is counted during a tick, because it is not known before the tick.
 #[test]
 fn the_work_within_a_tick_is_limited_for_checks_and_comparisons() {
     let file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../replays/game.replay")).unwrap();

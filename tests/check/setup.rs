@@ -60,7 +60,7 @@ impl Game for Walker {
     }
 }
 
-/// Ticks after which the fault is found.
+/// Number of ticks after which the check finds the fault; `None` if it finds none.
 fn found(setup: &Setup) -> Option<u64> {
     let options = CheckOptions::default().without(Variant::ByteSwapped);
     let error = check::<Walker>(setup, &vec![vec![true]; 20], &options).err()?;
@@ -75,6 +75,6 @@ fn found(setup: &Setup) -> Option<u64> {
 fn a_setup_that_its_encoding_changes_is_found() {
     assert_eq!(found(&Setup { is_hashed: true, speed: 3 }), Some(0));
     assert_eq!(found(&Setup { is_hashed: false, speed: 3 }), Some(20));
-    // The encoding keeps only the default speed.
+    // A decoded setup has the default speed, 0. The encoding therefore does not change a setup with this speed.
     assert_eq!(found(&Setup { is_hashed: true, speed: 0 }), None);
 }

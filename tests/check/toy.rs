@@ -18,16 +18,16 @@ pub(crate) enum Mistake {
     Global,
     /// `load` does not recompute the total.
     LoadKeepsCache,
-    /// `step` invalidates the last hit only when another player hits.
+    /// `step` uses the cached strength of the last hit if the same player hits again, and `load` keeps the cache.
     StaleMemory,
-    /// Calls of `state_hash` are counted in the state.
+    /// Each step adds half the number of calls of `state_hash`, `work` and `claims` to the state.
     HashCounts,
-    /// `state_hash` changes the next step.
+    /// Unless `state_hash` was called before the eighth step, this step adds a hit.
     HashTidies,
     SaveIsUnordered,
-    /// A claim counts calls of `state_hash`, `work` and `claims`.
+    /// The value of a claim is the number of calls of `state_hash`, `work` and `claims`.
     ClaimsCount,
-    /// The work counts calls of `state_hash`, `work` and `claims`.
+    /// The work of a tick is the number of calls of `state_hash`, `work` and `claims`.
     WorkCounts,
     ClaimsTwice,
     ClaimsGlobal,
@@ -37,7 +37,7 @@ pub(crate) enum Mistake {
     TenthIsHuge,
 }
 
-/// Two players walk along a line and hit each other. After a hit, a player has to cool down.
+/// Two players walk along a line and hit each other. After a hit, a player cannot hit again for 20 ticks.
 pub(crate) struct Toy {
     mistake: Mistake,
     state: State,
@@ -82,7 +82,7 @@ mod unordered {
     }
 }
 
-/// Decoding accepts at most 1; [`Mistake::Unreadable`] encodes 2.
+/// A byte that cannot be decoded if it is above 1. [`Mistake::Unreadable`] encodes a 2.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(try_from = "u8")]
 pub(crate) struct Flag(u8);

@@ -1,4 +1,4 @@
-//! Committed hashes, and sweeps.
+//! Helpers of the tests: committed hashes of scenes, and sweeps over many cases.
 
 pub mod sweep;
 
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Seed of the golden scenes.
 pub const SEED: u64 = 1;
 
-/// Hash of a scene after a number of ticks, for the current semantics.
+/// A line of a file of committed hashes: the hash of a scene after a number of ticks.
 pub struct Golden {
     /// Name of the scene.
     pub scene: String,
@@ -22,7 +22,7 @@ pub fn goldens() -> Vec<Golden> {
     goldens_of("tests/goldens.txt")
 }
 
-/// The lines of a file for the current semantics: semantics, scene, ticks, hash.
+/// The lines of a file for the current semantics. Each line has four words: semantics, scene, ticks, hash.
 pub fn goldens_of(file: &str) -> Vec<Golden> {
     let text = std::fs::read_to_string(root().join(file)).expect("a file of hashes");
     let semantics = lockstep2d::SEMANTICS.to_string();

@@ -14,8 +14,9 @@ pub fn size<T>(full: T, sampled: T) -> T {
     if is_long() { full } else { sampled }
 }
 
-/// All cases in the long run; otherwise the first, every `stride`th after it, and the last. A large sample of all
-/// combinations of parameters contains every value if the stride is coprime to the number of values of each parameter.
+/// All cases in the long run; otherwise the first, every `stride`th after it, and the last. If the cases are all
+/// combinations of several parameters, choose a stride that is coprime to the number of values of each parameter: a
+/// large sample then contains every value of every parameter.
 pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     let cases: Vec<T> = cases.into_iter().collect();
     let (last, stride) = (cases.len().saturating_sub(1), size(1, stride));
@@ -23,11 +24,11 @@ pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     cases.into_iter().enumerate().filter(chosen).map(|(_, case)| case).collect()
 }
 
-/// Checks each case, as many at a time as there are processors.
+/// Checks each case, on as many threads as there are processors.
 ///
 /// # Panics
 ///
-/// If a check panics, after the other threads have checked the remaining cases.
+/// If a check panics. The other threads check the remaining cases first.
 pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let workers = processors.min(cases.len());
@@ -48,7 +49,7 @@ pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
 ///
 /// # Panics
 ///
-/// If a check panics, after all other cases.
+/// If a check panics. All other cases are checked first.
 pub fn at_once<T: Send>(cases: impl IntoIterator<Item = T>, check: impl Fn(T) + Sync) {
     let check = &check;
     thread::scope(|scope| {

@@ -8,7 +8,7 @@ const OK = 0, BAD_FILE = 8;
 class Exit extends Error {}
 
 let memory;
-// Growing the memory detaches the old buffer.
+// Makes a new view for each access, because growing the memory detaches the old buffer.
 const bytes = () => new Uint8Array(memory.buffer);
 const set = (at, number) => new DataView(memory.buffer).setUint32(at, number, true);
 const get = (at) => new DataView(memory.buffer).getUint32(at, true);

@@ -9,7 +9,8 @@ use super::{caches_decide_nothing, weightless};
 
 #[test]
 fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
-    // The centre of mass is clamped, although the body does not move.
+    // The origin is at the edge of the world, and the centre of mass is 10 m beyond it. The first tick puts the centre
+    // of mass back to the edge, although the body has no velocity.
     let mut world = weightless();
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::new(fx!(10), fx!(0)), gyration: fx!(1) };
     let body = BodyDef::dynamic().position((WORLD_EXTENT_MAX, fx!(0))).mass(mass);
@@ -24,7 +25,7 @@ fn a_target_on_a_locked_axis_at_the_edge_of_the_world_is_valid() {
     let edge = Vec2::new(WORLD_EXTENT_MAX, fx!(0));
     let body = BodyDef::dynamic().position(edge).mass(mass).velocity((fx!(60), fx!(0)));
     let body = world.spawn(&body, &[]).unwrap();
-    // The centre of mass stops at the edge, so that the origin is 5 m beyond it.
+    // The centre of mass stops at the edge. The origin is then 5 m beyond it.
     (0..10).for_each(|_| world.step());
     world.set_kind(body, BodyKind::Kinematic).unwrap();
     let mut settings = *world.body(body).unwrap().settings();

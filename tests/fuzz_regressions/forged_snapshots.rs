@@ -1,4 +1,4 @@
-//! Snapshots of impossible worlds, with a correct hash.
+//! Snapshots that have a correct hash, but contain an impossible state, are refused.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -48,15 +48,15 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // If the world accepted a body that counts as resting and has a velocity: after the body stops, a world with caches
-    // would keep the body's contacts a tick longer than a world without caches.
+    // The forged body is marked as settled, but has a velocity. If it were accepted, a world with caches would keep the
+    // body's contacts a tick longer after the body stops than a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
-        // In the bytes, the velocity follows two coordinates and an angle.
+        // In the bytes of a body, the velocity follows the position (2 x 8 bytes) and the angle (4 bytes).
         bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();
@@ -66,8 +66,8 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
-    // If the world accepted a body that counts as resting and has a target: in a world without caches, the body would
-    // become active only after the tick in which it reaches the target.
+    // The forged body is marked as settled, but has a target. If it were accepted, the body would become active too
+    // late in a world without caches: only after the tick in which it reaches the target.
     let mut world = weightless();
     let body = world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.move_to(body, (fx!(4.25), fx!(0)), Angle::ZERO).unwrap();
@@ -88,8 +88,8 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_has_a_target_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
-    // A box that covers all numbers overlaps `Aabb::NOWHERE`, the marker of an unknown box. When bodies wake, a pair
-    // would be missed.
+    // A box from the smallest to the largest number overlaps `Aabb::NOWHERE`, which stands for a shape without a box.
+    // If it were accepted, a pair could be missed when bodies wake.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let body = world.spawn(&BodyDef::dynamic().position((fx!(3.25), fx!(7.5))), &[ball]).unwrap();
@@ -109,7 +109,8 @@ fn a_snapshot_of_a_fat_box_that_covers_all_numbers_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_contact_whose_points_have_one_feature_is_refused() {
-    // In the next tick, both points would start with the impulse of the first one, unless the solver reuses its rows.
+    // If the contact were accepted, both points would start the next tick with the impulse of the first one, but only
+    // if the solver does not reuse its cached rows.
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let square = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap());

@@ -1,4 +1,4 @@
-//! Minimal cases of findings of the fuzz targets (`fuzz/`).
+//! Faults that the fuzz targets (`fuzz/`) have found, each reduced to a minimal case.
 
 mod edge_of_the_world;
 mod forged_snapshots;
@@ -15,7 +15,7 @@ fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
-/// Expects digests equal to those of a copy without caches.
+/// Steps the world, and a copy whose caches are cleared before every tick. Expects that their digests stay equal.
 fn caches_decide_nothing(world: &mut World, ticks: u64) {
     let mut bare = world.clone();
     for _ in 0..ticks {
@@ -29,8 +29,8 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an end of every edge, so none is on the wrong side. The area is zero, and the mass
-    // computation would divide by zero.
+    // Every vertex coincides with an end of every edge, so no vertex is on the wrong side of an edge. The area is zero,
+    // and the mass computation would divide by it.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }
@@ -44,7 +44,8 @@ fn an_outline_that_goes_round_twice_is_refused() {
 
 #[test]
 fn a_removed_shape_moves_the_others_as_their_caches_say() {
-    // The removal moves the centre of mass, and the rounding of the new centre moves the remaining shapes.
+    // The removal moves the centre of mass. The new centre is rounded, which moves the remaining shapes a little. Their
+    // caches must follow.
     let mut world = weightless();
     for turn in 1..40 {
         let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset((x, y));
@@ -80,7 +81,7 @@ fn many_shapes_at_one_point_are_work_in_their_first_tick() {
     };
     let (_, spent, pairs) = play(u64::MAX);
     assert!(pairs == 79_800 && spent >= pairs, "{spent} work units for {pairs} pairs");
-    // With a smaller budget, the search stops before it has listed all pairs.
+    // With a smaller budget, the search stops before it has listed all pairs. Each new pair costs 12 units.
     let (is_within, _, pairs) = play(100_000);
     assert!(!is_within && pairs <= 100_000 / 12, "{pairs} pairs");
 }
@@ -143,8 +144,8 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
 
 #[test]
 fn impulses_that_grow_over_sub_steps_are_no_overflow() {
-    // An impulse accumulates several updates of at most 512 m/s and is applied at once in the next sub-step. Each ball
-    // pushes all others, and gravity accelerates the balls to the speed limit.
+    // In a sub-step, an impulse may grow by several updates of up to 512 m/s each. The next sub-step applies their sum
+    // at once. Each ball pushes all others, and gravity accelerates the balls to the speed limit.
     let gravity = Vec2::new(fx!(0), fx!(-100000));
     let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
@@ -189,8 +190,8 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
 
 #[test]
 fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_format() {
-    // Both axes of a hinge together change a velocity by more than 512 m/s. The magnitude of the most negative number
-    // does not fit a signed number.
+    // The two axes of a hinge together may change a velocity by more than 512 m/s. The velocity could then become the
+    // most negative number of its format, whose magnitude does not fit the format.
     for turn in 0..64u32 {
         let mut world = weightless();
         let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
@@ -223,7 +224,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // If each new shape were compared with all earlier ones, 20 000 shapes would take a minute.
+    // If each new shape were compared with all earlier ones, 20 000 shapes would already take a minute.
     let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };
@@ -246,7 +247,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // When a kinematic body starts to move, the world visits all joints of the body.
+    // When a kinematic body starts to move, the world visits all joints of the body. This work must be counted.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
@@ -275,8 +276,8 @@ fn kinematic_bodies_that_start_to_move_are_work() {
 
 #[test]
 fn contacts_that_have_parted_do_not_rest() {
-    // A body that is pushed out of an overlap leaves its fat box within the tick. If it fell asleep before the pairs
-    // are updated, its separated contacts would be kept until the caches are cleared.
+    // A body that is pushed out of an overlap may leave its fat box within the tick. If it then fell asleep before the
+    // next pair update, contacts whose boxes no longer overlap would stay until the caches are cleared.
     let mut rng = lockstep2d::math::Rng::new(1);
     for _ in 0..40 {
         let gravity = Vec2::new(fx!(25), fx!(-40));
@@ -320,8 +321,8 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // The material of two shapes is cached under their slots. A removal searches the active contacts, but not those of
-    // sleeping bodies. A new shape reuses the slot before the next tick.
+    // The combined material of two shapes is cached under their slots. Here a sleeping shape, whose contacts are not
+    // active, is removed, and a new shape reuses its slot before the next tick. It must not get the cached material.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();
@@ -361,7 +362,8 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge most opposed to the bar's side lies beside the bar. The contact points must lie on the bar.
+    // The edge of the outline that faces the bar most directly lies beside the bar. The contact points must lie on the
+    // bar.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");
@@ -382,8 +384,8 @@ fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
 
 #[test]
 fn an_overlap_beyond_the_range_of_separations_at_a_predicted_impact() {
-    // The upper sliver turns by 19 degrees in the tick: one of its ends is more than 16 m inside the lower sliver when
-    // the corners are predicted to touch.
+    // The upper sliver turns by 19 degrees in the tick. When the corners are predicted to touch, one of its ends is
+    // more than 16 m inside the lower sliver, which exceeds the range of a separation.
     let sliver = |x: Fx, y: Fx| {
         let corners = [(fx!(-100), fx!(0)), (x, y), (fx!(100), fx!(0))].map(Vec2::from);
         ShapeDef::new(Polygon::hull(&corners).unwrap())

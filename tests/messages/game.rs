@@ -1,4 +1,4 @@
-//! A game with the required items of `Game` only.
+//! A game that implements only the required items of `Game`.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};

@@ -8,7 +8,7 @@ use lockstep2d::world::{Section, Violation};
 
 use crate::says;
 
-/// Slot 7 in generation 2.
+/// Encoding of a handle: slot 7 in generation 2.
 const SLOT_7: [u8; 8] = [7, 0, 0, 0, 2, 0, 0, 0];
 
 #[test]

@@ -10,13 +10,13 @@ use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 use crate::memory;
 use crate::mutation::{below, mutate, repair};
 
-/// Time limit for one file in seconds.
+/// Time limit for reading or simulating one file, in seconds.
 const SECONDS_MAX: u64 = 5;
 /// Largest memory use for one file in bytes.
 const MEMORY_MAX: usize = 32 << 20;
 /// Largest size of a small file, in bytes.
 const SMALL: usize = 6000;
-/// One in this number of mutated files is not small.
+/// One in this number of mutated files is made from an original that is not small.
 const LARGE_ONE_IN: u32 = 50;
 /// Decoded content of a replay.
 #[derive(PartialEq, Eq)]
@@ -101,7 +101,7 @@ pub(crate) fn files_wanted(few: u64) -> u64 {
     std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }
 
-/// Changes a random file in one to three ways, half of the time with repaired checksums.
+/// Returns a random original with one to three random changes. In half of the cases, checksums are then repaired.
 pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     let (small, large): (Vec<_>, Vec<_>) = originals.iter().partition(|file| file.len() <= SMALL);
     let kind = if rng.below(LARGE_ONE_IN) == 0 && !large.is_empty() { large } else { small };
@@ -117,7 +117,8 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     file
 }
 
-/// Checks that every mutated replay that is accepted has the setup, inputs and verdict of an original.
+/// Verifies mutated replays. Expects that each one with the verdict `Match` has the setup, inputs and verdict of an
+/// original.
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));

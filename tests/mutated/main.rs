@@ -19,11 +19,11 @@ use judge::{Figures, check_replays, files_wanted, mutated};
 
 /// Default number of files per test.
 const FILES: u64 = 2000;
-/// Largest size of an original in bytes: larger files take longer.
+/// Largest size in bytes of the originals. Larger files are left out, because they take longer.
 const LARGEST: usize = 60_000;
 /// Number of ticks that an accepted world is simulated.
 const TICKS: u32 = 3;
-/// Largest memory use while a snapshot is read, as a multiple of its size.
+/// Largest allowed memory use while a snapshot is read, as a multiple of its size.
 const SNAPSHOT_MULTIPLE: usize = 100;
 
 #[test]
@@ -81,7 +81,8 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     }
 }
 
-/// In a file, a vacant slot takes the bytes of its generation. In memory, it takes as much as a body.
+/// The worst case is a snapshot of vacant slots: in the file, each takes only the bytes of its generation, but in
+/// memory it takes as much as a body.
 #[test]
 fn what_a_snapshot_takes_is_bounded_by_its_bytes() {
     let mut world = World::default();

@@ -28,7 +28,8 @@ fn took(bytes: usize) {
     PEAK.set(PEAK.get().max(in_use));
 }
 
-// SAFETY: forwards to the system allocator. The default `realloc` counts both buffers.
+// SAFETY: forwards to the system allocator. The default `realloc` calls `alloc` and `dealloc`, so it counts both
+// buffers while it copies.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         took(layout.size());

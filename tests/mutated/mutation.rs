@@ -3,15 +3,15 @@
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 
-/// Size in bytes.
+/// Size in bytes of a checksum in a replay.
 const CHECKSUM: usize = 8;
-/// Size in bytes.
+/// Size in bytes of the hash at the end of a snapshot.
 const HASH: usize = 16;
-/// Size in bytes: magic, format, semantics and length.
+/// Size in bytes of the header of a snapshot: magic, format, semantics and length.
 const SNAPSHOT_HEADER: usize = 24;
 const TRAILER: u8 = 3;
 const CHAIN: std::ops::Range<usize> = 24..40;
-/// Numbers at the limits of types.
+/// Numbers that readers may handle wrongly as lengths: 0 and small numbers, powers of two, and the limits of types.
 const EDGES: [u64; 12] =
     [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, 0xffff_ffff, u64::MAX];
 
@@ -38,7 +38,7 @@ const ALL: [Mutation; 8] = [
     Mutation::Length,
 ];
 
-/// Applies a random mutation. Some mutations copy a piece of one of the `others`.
+/// Applies a random mutation. [`Mutation::Splice`] copies a piece of one of the `others`.
 pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> Mutation {
     let mutation = ALL[below(rng, ALL.len())];
     let length = file.len();
@@ -85,7 +85,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // The place is random, or the beginning of a part, where length fields are.
+            // Overwrites bytes by a number, at a random place or at the beginning of a part, where length fields are.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);
@@ -106,7 +106,7 @@ pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
     usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
 
-/// A random range, often exactly one part.
+/// A random range of the file. In half of the cases, it is exactly one part: see [`boundaries`].
 fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     let places = boundaries(file);
     if rng.below(2) == 0 && places.len() > 1 {

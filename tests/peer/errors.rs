@@ -1,4 +1,4 @@
-//! A peer that cannot continue.
+//! A peer with an error plays no more ticks, but can still leave and join again.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -84,7 +84,7 @@ impl Transport for Counted {
     }
 }
 
-/// Plays the ticks that are due. The input changes in every tick, so that guesses of other peers are wrong.
+/// Plays the ticks that are due. The input changes in every tick, so the other peer guesses wrong inputs.
 fn play(peer: &mut Peer<Ticks, Counted>) {
     while peer.is_due() {
         let key = u8::try_from(peer.tick() % 7).expect("less than 7");

@@ -28,7 +28,7 @@ struct Table {
     peers: Vec<Option<Peer<Pushers, Port>>>,
     events: Vec<Vec<PeerEvent>>,
     replays: Vec<Vec<u8>>,
-    /// A peer that plays no ticks: its game calls only `update`.
+    /// Index of a peer that plays no ticks: its game calls `update`, but not `advance`.
     stopped: Option<usize>,
 }
 
@@ -79,7 +79,7 @@ impl Table {
         self.sit(peer.expect("valid"));
     }
 
-    /// Plays for some milliseconds. A peer that has closed is removed.
+    /// Plays for a number of simulated milliseconds. Removes peers that have closed.
     fn play(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             let now = self.network.time() + Duration::from_millis(1);
@@ -161,7 +161,7 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
-        // The contact of the spectator has left. The spectator has found another one.
+        // The peer that sent the match to the spectator has left. The spectator has found another one.
         assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
@@ -185,7 +185,7 @@ fn late_joiners_and_spectators_follow() {
     }
 }
 
-/// After an outage, the guest gets its seat back.
+/// After an outage of 6 s, the guest gets its seat back, and its replay is complete.
 #[test]
 fn an_outage_costs_no_replay() {
     let options = PeerOptions::lockstep();
@@ -270,7 +270,7 @@ fn a_dedicated_server_plays_no_seat() {
     assert!(matches!(verify::<Pushers>(&replays[0], &Limits::default()), Verdict::Match { .. }));
 }
 
-/// After the first player has left, nobody plays until the second one gets its seat.
+/// The server plays no seat. After the first player has left, nobody plays until the second player gets a seat.
 #[test]
 fn a_late_player_who_is_alone_plays_at_the_rate_of_the_game() {
     let options = PeerOptions { start_with: 1, ..PeerOptions::rollback() };
@@ -288,7 +288,8 @@ fn a_late_player_who_is_alone_plays_at_the_rate_of_the_game() {
     assert!((115..=125).contains(&played), "{played} ticks in 2 s");
 }
 
-/// Before the first tick, no tick can stall. Only the missing packets show that the contact has left.
+/// Before the match begins, no tick can be overdue. The spectator must notice from the lack of packets that its contact
+/// has left.
 #[test]
 fn a_spectator_whose_contact_leaves_the_lobby_finds_another_one() {
     let options = PeerOptions { start_with: 3, ..PeerOptions::rollback() };

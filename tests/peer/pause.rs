@@ -2,7 +2,7 @@ use lockstep2d::session::Status;
 
 use super::{Table, modes};
 
-/// One peer stops, and the other one waits for it for five times the patience.
+/// One peer plays no ticks for 10 s, which is five times the patience. The other peer waits for it.
 #[test]
 fn a_pause_costs_no_seat_and_is_not_caught_up() {
     for options in modes() {

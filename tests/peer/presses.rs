@@ -1,4 +1,5 @@
-//! A game passes a key press to `advance` until an input with it is issued, and then forgets the press.
+//! A game remembers a key press, and passes it to `advance` until `advance` returns that an input was issued. Each
+//! press then counts for exactly one tick.
 
 use std::time::Duration;
 
@@ -9,8 +10,8 @@ use super::{Pushers, Table, modes};
 
 const PRESS: u8 = 16;
 
-/// With rollback, the input delay is above 0 from the start. It jumps when the third peer gets a seat, and when the
-/// latencies of its links are measured.
+/// The input delay jumps when the third peer gets a seat, and when the latencies of its links are measured. With
+/// rollback, the delay is above 0 from the start.
 #[test]
 fn a_press_counts_for_one_tick() {
     for options in modes() {
@@ -27,7 +28,7 @@ fn a_press_counts_for_one_tick() {
             for (at, presses) in presses.iter_mut().enumerate().take(table.peers.len()) {
                 let peer = table.peer(at);
                 peer.update(now).expect("valid");
-                // A press in each update until the last second, whose inputs may not be final at the end.
+                // Each update has a press, except in the last second, whose inputs may not be final at the end.
                 let mut pressed = step < 7000;
                 while peer.is_due() {
                     let inputs = vec![if pressed { PRESS } else { 0 }; peer.seats().len()];

@@ -30,7 +30,7 @@ pub(crate) struct Pushers {
     fault: Option<Fault>,
 }
 
-/// A bit of a disc that flips whenever `tick` is simulated.
+/// A planted fault: a bit of a disc's state flips whenever the game has just simulated its `tick`th tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fault {
     pub(crate) tick: u64,

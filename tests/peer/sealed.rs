@@ -29,7 +29,8 @@ impl Transport for Tapped {
     }
 }
 
-/// The attacker sends every packet again, unchanged and changed, from another address to a random peer.
+/// The attacker sends every packet again, from another address to a random peer: once unchanged, and once with a
+/// flipped bit.
 #[test]
 fn a_sealed_match_ignores_strangers() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(20)), 1);
@@ -65,12 +66,12 @@ fn a_sealed_match_ignores_strangers() {
             attacks += 1;
             let to = Network::address(rng.below(2));
             stranger.send(&packet, &to);
-            // A sealed packet has at least 32 bytes.
+            // Flips a bit of the first 32 bytes, which every sealed packet has.
             let at = usize::try_from(rng.below(32)).expect("valid");
             packet[at] ^= 1 << rng.below(8);
             stranger.send(&packet, &to);
         }
-        // Repeated packets get no answer.
+        // No peer answers the attacker.
         assert_eq!(stranger.receive(), None);
     }
     assert!(attacks > 500, "{attacks}");

@@ -6,8 +6,8 @@ use lockstep2d::replay::{Limits, Verdict, verify};
 
 use super::{Pushers, Table, modes};
 
-/// The game is often ahead of the last final tick, also in lockstep. `Table::play` takes the finished bytes of the
-/// replay after every update; `replay_so_far` still has all ticks.
+/// The game is often ahead of the last final tick, also in lockstep. The replay must have all ticks up to the last
+/// final one and no more, although `Table::play` takes the finished bytes of the replay after every update.
 #[test]
 fn a_replay_so_far_ends_at_the_last_final_tick() {
     for options in modes() {

@@ -5,7 +5,7 @@ use lockstep2d::session::Status;
 
 use super::{Table, identity};
 
-/// Both players know the latency since the second one joined, so the input delay fits the latency from the first tick.
+/// The latency was measured while the second player joined, so the input delay fits it from the first tick on.
 #[test]
 fn lockstep_plays_at_full_speed_from_the_start() {
     let options = PeerOptions { start_with: 2, ..PeerOptions::lockstep() };
@@ -33,6 +33,6 @@ fn keys_and_round_trips_of_all_players_are_known() {
     let players: Vec<_> = spans.map(|span| (span.key, span.seat, round_trip(span.owner))).collect();
     let [(host, 0, 0), (guest, 1, ping)] = players[..] else { panic!("{players:?}") };
     assert_eq!([host, guest], [0, 1].map(|number| identity(number).key));
-    // Twice 30 ms, twice up to 4 ms of jitter, and up to 1 ms until each packet is read.
+    // In each direction: 30 ms of latency, up to 4 ms of jitter, and up to 1 ms until the packet is read.
     assert!((60..=70).contains(&ping), "{ping}");
 }

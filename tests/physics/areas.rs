@@ -1,5 +1,6 @@
-//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag. `u` is
-//! the velocity of the medium, `a` the acceleration, `c` the rate of the drag, and `R` the radius where gravity is `g`.
+//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag. `v` is
+//! the velocity of the body, `u` that of the medium, `a` the acceleration, `c` the drag per second, `r` the distance
+//! from the centre of attraction, and `R` the distance at which the attraction is `g`.
 //!
 //! ```text
 //! floating    submerged area * fluid density = area * density
@@ -59,7 +60,7 @@ fn a_box_of_half_the_density_floats_half_submerged() {
     for (density, height) in [(fx!(0.5), fx!(0)), (fx!(0.25), fx!(0.1)), (fx!(0.9), fx!(-0.16))] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
-        // The raft is flat enough to be stable.
+        // The raft is so flat that it does not capsize.
         let raft = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.2)).expect("valid")).density(density);
         let raft = spawn_awake(&mut world, raft, (fx!(3), fx!(1)));
         run(&mut world, 900);
@@ -77,7 +78,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
     let rounded = Geometry::Polygon(
         Polygon::rectangle(fx!(0.9), fx!(0.2)).expect("valid").rounded(fx!(0.1)).expect("valid"),
     );
-    // The shapes have half the density of water, so that their centres are at the surface.
+    // The shapes have half the density of the fluid, so their centres are at the surface.
     for geometry in [disc, pill, rounded] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
@@ -85,7 +86,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
         run(&mut world, 900);
         close(at(&world, body).y, fx!(0), fx!(0.002));
     }
-    // A disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2 is submerged.
+    // A disc whose centre is r / 2 below the surface: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2 is submerged.
     let share = fx_div(PI - PI / 3 + fx!(0.433012701892), PI).expect("valid");
     let mut world = world(fx!(-10));
     pool(&mut world, fx!(0), fx!(20), water);
@@ -161,7 +162,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     let mut world = world(fx!(0));
     let wind = Area::new().force((fx!(3), fx!(4)));
     let gust = ShapeDef::new(Polygon::square(fx!(100)).expect("valid")).area(wind);
-    // The force is along the axes of the area's body.
+    // The force is given in the frame of the area's body, which is rotated by a quarter turn.
     world.spawn(&BodyDef::fixed().angle(Angle::QUARTER), &[gust]).expect("valid");
     let bodies = [fx!(1), fx!(10)]
         .map(|density| spawn(&mut world, square(fx!(0.5)).density(density), (fx!(0), density)));
@@ -245,7 +246,7 @@ fn a_tunnel_through_a_planet_is_an_oscillator() {
     world.spawn(&BodyDef::fixed(), &[planet]).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
     let ball = spawn(&mut world, ball, (fx!(8), fx!(0)));
-    // Half of a period of 2 pi s, 377 ticks.
+    // Half of the period, which is 2 pi s or 377 ticks.
     run(&mut world, 188);
     close(at(&world, ball).x, fx!(-8), fx!(0.01));
 }
@@ -264,7 +265,7 @@ fn a_planet_may_have_a_sea() {
         .map(|(x, y)| spawn(&mut world, ball, (Fx::from_num(x), Fx::from_num(y))));
     run(&mut world, 900);
     for ball in balls {
-        // The engine treats the circular sea as a polygon of 32 corners.
+        // The tolerance allows for the engine's approximation of the circular sea by a polygon with 32 corners.
         close(at(&world, ball).length(), fx!(20), fx!(0.07));
     }
 }
@@ -309,7 +310,7 @@ fn what_floats_sleeps_and_wakes() {
     assert_eq!(asleep(&world), [false, false]);
     run(&mut world, 600);
     assert_eq!(asleep(&world), [true, true]);
-    // A body that is slower than the sleep speed for half a second may be off by half a second of that speed.
+    // A body falls asleep after half a second below its sleep speed, so it may be off by 0.5 s times this speed.
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
@@ -338,7 +339,7 @@ fn a_command_sets_the_wind() {
     assert!(!world.body(body).expect("valid").is_asleep());
 }
 
-/// The area of a moving body wakes a sleeping body when the area reaches it.
+/// If a moving body has an area, the area wakes a sleeping body as soon as it reaches it.
 #[test]
 fn a_moving_magnet_wakes_a_box_that_it_reaches() {
     let mut world = world(fx!(-10));
@@ -359,7 +360,7 @@ fn a_moving_magnet_wakes_a_box_that_it_reaches() {
             woken_at = Some(at(&world, magnet).x);
         }
     }
-    // The area of 3 m reaches the box at x = -0.3 when the magnet is at x = -3.3.
+    // The area has a radius of 3 m, so it reaches the left side of the box, x = -0.3, when the magnet is at x = -3.3.
     close(woken_at.expect("it passes"), fx!(-3.3), fx!(0.1));
 }
 

@@ -1,7 +1,7 @@
 //! Random assemblies: bodies without shapes, joined in a star, a tree, a chain, a loop, a mesh or a grid.
 //!
-//! Joints are satisfied at the start and store no energy. Masses are within a factor of 100, and arms within 16 radii
-//! of gyration.
+//! Joints are satisfied at the start and store no energy. Masses differ by a factor of at most 100. Lever arms are at
+//! most 16 times as long as the radius of gyration of their body.
 #![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 #![allow(dead_code, reason = "all starts and kinds are defined, the tests use those that gain no energy")]
@@ -37,9 +37,9 @@ pub(crate) enum Mix {
     Friction,
     /// A random kind among [`MIXES`] for each joint.
     Every,
-    /// Springs between points and between angles.
+    /// Motor joints with a linear spring and, in two of three cases, an angular one.
     MotorSpring,
-    /// Springs that only pull, only push, or have a largest force.
+    /// Distance joints whose spring only pulls, only pushes, or exerts at most 50 N.
     LimitedSpring,
 }
 
@@ -318,11 +318,12 @@ impl Scaled for Vec2<Fx> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
-    /// Largest gain of energy, as a share of the energy at the start, or of [`Assembly::scale`] for [`Start::Hang`].
+    /// Largest gain of energy in the run, as a share of the energy at the start. For [`Start::Hang`], as a share of
+    /// [`Assembly::scale`].
     pub(crate) gain: f64,
     pub(crate) faults: u64,
     pub(crate) gap: f64,
-    /// Change of energy at the end, in the unit of `gain`.
+    /// Change of energy from the start to the end of the run, as the same share as `gain`.
     pub(crate) left: f64,
 }
 

@@ -13,7 +13,7 @@ fn float(x: Fx) -> f64 {
 }
 
 impl Assembly {
-    /// Kinetic, potential and spring energy in J. Potential energy is zero at the origin.
+    /// Sum of kinetic, potential and spring energy in J. The potential energy is zero at the height of the origin.
     pub(crate) fn energy(&self) -> f64 {
         let gravity = float(self.world.config().gravity.y);
         let of = |body: &Body| {
@@ -63,7 +63,7 @@ impl Assembly {
         let gap = at_b - at_a;
         let gap = (float(gap.x), float(gap.y));
         let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
-        // Energy of a spring whose force is at most `max`.
+        // Energy of a spring that is deformed by `x`, and whose force is at most `max`.
         let limited = |hertz: Fx, mobility: f64, x: f64, max: f64| {
             let stiffness = omega(hertz).powi(2) / mobility;
             let soft = x.min(max / stiffness);
@@ -115,7 +115,8 @@ pub(crate) struct Momentum {
 }
 
 impl Momentum {
-    /// Changes of momentum and angular momentum, relative to `size` and to the angular momentum at the start.
+    /// The change of momentum as a share of `size`, and the change of angular momentum as a share of its value at the
+    /// start.
     pub(crate) fn change(&self, end: &Self) -> [f64; 2] {
         let apart = (end.linear[0] - self.linear[0]).hypot(end.linear[1] - self.linear[1]);
         [apart / self.size, ((end.angular - self.angular) / self.angular).abs()]

@@ -1,4 +1,4 @@
-//! Gears whose wheels turn about one point: they have no pitch point, and do not conserve angular momentum.
+//! Gears whose two wheels turn about the same point: they have no pitch point, and do not conserve angular momentum.
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -6,7 +6,8 @@ use lockstep2d::math::{Fx, Vec2, fx_div};
 use lockstep2d::solver::{Gear, JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A brake holds B, or B is fixed. The teeth multiply or divide the torque on A, and may reverse it.
+/// B is fixed, or a brake holds it. The torque on B is the torque on A times the ratio of the teeth, which may be
+/// negative.
 #[test]
 fn torques_are_in_the_ratio_of_the_teeth() {
     for teeth in [[1, -12], [1, 12], [12, -1], [5, 7]] {

@@ -25,7 +25,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
-    // The loop keeps the last contacts, because the world lists no contacts of sleeping bodies.
+    // Keeps the last list that is not empty, because the world lists no contacts of sleeping bodies.
     let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
@@ -39,7 +39,8 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s.
+/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s. One of the six
+/// heaps may therefore be restless.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
     let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {
@@ -53,7 +54,7 @@ fn capsules_pile_up_on_boxes_circles_and_segments() {
     assert!(restless <= 1 && speeds.iter().all(|&speed| speed < fx!(0.5)), "{speeds:?} m/s");
 }
 
-/// 40 bodies between two walls, after 20 seconds.
+/// A heap of 40 bodies between two walls, after 20 seconds. `height` raises their initial positions.
 fn heap(height: Fx) -> World {
     let mut world = World::default();
     let ends = [Vec2::new(fx!(-20), fx!(0)), Vec2::new(fx!(20), fx!(0))];

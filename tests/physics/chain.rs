@@ -1,4 +1,4 @@
-//! At the vertices of a chain there are no ghost collisions at 1 to 20 m/s. Chains are solid.
+//! Shapes that slide over a chain at 1 to 20 m/s have no ghost collisions with its vertices, and do not get through it.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -25,7 +25,7 @@ fn height(name: &str) -> Fx {
     if name == "small ball" { fx!(0.1) } else { fx!(0.5) }
 }
 
-/// 1001 points from right to left at height 0, 10 to 50 cm apart.
+/// 1001 points at height 0 from right to left. Neighbours are 10 to 50 cm apart.
 fn flat() -> Vec<Vec2<Fx>> {
     let mut rng = Rng::new(1);
     let mut x = fx!(290);
@@ -78,14 +78,14 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
         assert!(fastest < fx!(0.05), "{name} at {speed} m/s: {fastest} m/s up or down");
         let travelled = world.body(body).expect("there").position().x;
         let free = speed * 800 / 60;
-        // Rounded corners that meet the vertices change the distance by 0.03 %.
+        // Rounded corners that meet the vertices change the distance a little.
         assert!(friction > 0 || (travelled - free).abs() < fx!(0.03), "{name}: {travelled} m");
         assert_eq!(world.faults(), 0);
     });
 }
 
-/// An arc of radius 100 m in 1000 links of 0.2 m: a valley around (0, 100), or a hill around (0, -100). The upper side
-/// is solid.
+/// An arc with a radius of 100 m in 1000 links of 0.2 m: a valley with its centre at (0, 100), or a hill with its
+/// centre at (0, -100). The upper side is solid.
 fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     let points = (0..=1000i32).map(|i| {
         let turn = Angle::from_radians(Fx::from_num(500 - i) / 500);
@@ -96,7 +96,7 @@ fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// Without friction, a body that follows the arc has no radial velocity. A chord of 0.2 m is 0.05 mm below its arc.
+/// Without friction, a body that follows the arc has no radial velocity. The middle of a link is 0.05 mm off the arc.
 #[test]
 fn everything_follows_a_gentle_arc() {
     for (hill, speeds) in [(false, [fx!(1), fx!(5), fx!(20)]), (true, [fx!(1), fx!(5), fx!(10)])] {
@@ -132,7 +132,7 @@ fn everything_follows_a_gentle_arc() {
     }
 }
 
-/// On slopes of every angle, no shape gains energy or gets through.
+/// The chain has slopes of every angle. All shapes come to rest inside it.
 #[test]
 fn a_rough_closed_chain_keeps_everything_inside() {
     let mut rng = Rng::new(5);
@@ -212,12 +212,12 @@ fn corners_are_solid() {
             deep += u32::from(deepest >= fx!(0.15));
         }
     }
-    // In about 1 of 1000 cases, a box that grazes an end or the ridge counts as deep for a tick.
+    // In about 1 of 1000 cases, a box that grazes an end of the chain or the ridge is reported as deep for one tick.
     assert!(deep <= 1, "{deep} of 150 are more than 15 cm deep");
 }
 
-/// A neighbouring link affects the ghost-collision filter only as far as the link reaches. A plank over a crest rests
-/// on the far side of the next valley, and a ray hits that side.
+/// A neighbouring link may affect the ghost-collision filter only as far as this link reaches. Therefore, a plank over
+/// a crest rests on the far side of the next valley, and a ray hits that side.
 #[test]
 fn what_reaches_over_a_crest_meets_the_far_side() {
     let points = [(20, -10), (4, 1), (0, -1), (-10, 1), (-30, 1)]

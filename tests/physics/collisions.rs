@@ -11,7 +11,7 @@ fn momentum(world: &World) -> Vec2<Fx> {
     world.bodies().fold(Vec2::ZERO, |sum, (_, body)| sum + body.velocity().scale(body.mass()))
 }
 
-/// `sum m r x v + I w` about the origin.
+/// Angular momentum of all bodies about the origin: the sum of `m r x v + I w`.
 fn angular_momentum(world: &World) -> Fx {
     world.bodies().fold(Fx::ZERO, |sum, (_, body)| {
         let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -36,7 +36,8 @@ fn momentum_stays_in_every_tick_of_a_collision() {
     }
 }
 
-/// Lever arms are constant within a tick, so angular momentum may deviate by `|P| |v_rel| dt`.
+/// The solver keeps lever arms constant within a tick of length `dt`. With the impulse `P` and the relative velocity
+/// `v_rel`, the angular momentum may therefore deviate by `|P| |v_rel| dt`.
 #[test]
 fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     let mut game = open("oblique");

@@ -18,8 +18,8 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Simulates until all bodies sleep, for at most a minute. No body may move to a side by more than `sideways`, or sink
-/// by more than `sink`.
+/// Expects that all bodies fall asleep within a minute, and that until then no body moves to a side by more than
+/// `sideways` metres or sinks by more than `sink` metres.
 fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     let places: Vec<_> = world.bodies().map(|(id, body)| (id, body.position())).collect();
     for _ in 0..world.config().tick_rate * 60 {
@@ -36,8 +36,8 @@ fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     assert_eq!((world.awake_body_count(), world.faults()), (0, 0), "{name}");
 }
 
-/// The boxes are exactly above each other, or up to a centimetre aside. A contact gives way by up to 0.72 mm for each
-/// box above it, so that the top of `n` boxes sinks by up to `n^2 / 2` times 0.72 mm.
+/// The boxes are exactly above each other, or each is shifted to a side by up to 1 cm. A contact gives way by up to
+/// 0.72 mm for each box above it, so the top of `n` boxes sinks by up to `n^2 / 2` times 0.72 mm.
 #[test]
 fn a_column_of_a_hundred_boxes_stands() {
     let counts = [10, 40, 60, 80, 100].into_iter();
@@ -57,8 +57,8 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
-/// Only the rounded borders touch, not the polygons inside them. In this case each tick chooses the reference face
-/// anew.
+/// Only the rounded borders touch, not the polygons inside them. Each tick then chooses anew which of the two touching
+/// faces is the reference face of the manifold.
 #[test]
 fn a_column_of_a_hundred_rounded_boxes_stands() {
     let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();
@@ -73,7 +73,7 @@ fn a_column_of_a_hundred_rounded_boxes_stands() {
             let place = Vec2::new(fx!(0), Fx::from(i) + fx!(0.5));
             world.spawn(&BodyDef::dynamic().position(place), &[rounded]).expect("valid");
         }
-        // The stiffness of contacts depends on the tick rate.
+        // Contacts are softer at a low tick rate, so each gives way more.
         let give = if rate < 60 { fx!(0.0015) } else { fx!(0.00036) };
         let sink = give * i64::from(count * count) + fx!(0.02);
         expect_stands(&format!("{count} boxes of radius {radius} at {rate} Hz"), world, fx!(0.05), sink);
@@ -125,7 +125,7 @@ fn a_house_of_cards_stands() {
     }
 }
 
-/// Builds a semicircular arch of wedges with a mean radius of 4 m. `thickness` is a share of that radius.
+/// Builds a semicircular arch of wedges with a mean radius of 4 m. `thickness` is a multiple of this radius.
 fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     for stone in 0..stones {
         let place = |number: u32, radius: Fx| {

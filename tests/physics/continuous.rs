@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
 
-/// A shape of 5 cm.
+/// A shape that is 5 cm long: 0 is a circle, 1 a capsule, 2 a square.
 fn small(kind: u32) -> ShapeDef {
     let geometry = match kind {
         0 => Geometry::circle(fx!(0.025)),
@@ -15,7 +15,7 @@ fn small(kind: u32) -> ShapeDef {
     ShapeDef::new(geometry.expect("valid"))
 }
 
-/// A wall of 1 cm through the origin. Returns its normal.
+/// Adds a wall that is 1 cm thick and passes through the origin. Returns its normal.
 fn wall(world: &mut World, angle: Angle) -> Vec2<Fx> {
     let wall = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(0.005)).expect("valid"));
     world.spawn(&BodyDef::fixed().angle(angle), &[wall]).expect("valid");
@@ -110,8 +110,8 @@ fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
     }
 }
 
-/// Launches 300 balls of 6 cm near a blade of 2 cm that turns by up to half a radian in a tick. Returns the number of
-/// balls that pass the blade.
+/// Launches 300 balls with a diameter of 6 cm near a blade that is 2 cm thick and turns by up to half a radian in a
+/// tick. Returns the number of balls that pass through the blade.
 fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
     let mut rng = Rng::new(47);
     let mut passed = 0;
@@ -137,7 +137,8 @@ fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
             let turned = fx_mul(spin, fx!(0.0166666));
             world.step();
             let now = across(&world);
-            // Only one half of the blade counts, because the other half may have met the ball from the other side.
+            // Counts only balls that are at the same half of the blade before and after the tick. For other balls, the
+            // side of the blade can change without passing through it.
             let is_along = now.x.abs() < fx!(1.9) && last.x.abs() < fx!(1.9);
             let same_half = (now.x > 0) == (last.x > 0) && turned < fx!(0.6);
             passed += u32::from(far && is_along && same_half && (now.y > 0) != (last.y > 0));
@@ -171,7 +172,7 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
             let body = BodyDef::dynamic().position(at).velocity((fx!(40), fx!(10))).continuous(continuous);
             bodies.push(world.spawn(&body, &[square]).expect("valid"));
         }
-        // 6 rad/s about a distant point carry a box at 24 m/s.
+        // A tray that turns at 6 rad/s about a distant point carries a box at 22.2 m/s, 3.7 m from this point.
         let tray = ShapeDef::new(Polygon::rectangle(fx!(0.6), fx!(0.05)).expect("valid"));
         let tray = tray.offset((fx!(0), fx!(-4)));
         let arm = BodyDef::kinematic().position((fx!(0), fx!(100))).angular_velocity(fx!(6));
@@ -191,8 +192,8 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
     assert_eq!(hashes[0], hashes[1]);
 }
 
-/// The drum turns as fast as that of the scene `washer`. Sweeping against the drum does not press the boxes together.
-/// The motion is chaotic, so means of several starts are compared.
+/// The drum turns as fast as that of the scene `washer`. Sweeping boxes against the drum must not press them deeper
+/// into each other. The motion is chaotic, so the test compares means over several starts of the median depth.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     const STARTS: i32 = 8;

@@ -7,9 +7,10 @@ use lockstep2d::solver::{Gear, JointDef, Prismatic, Pulley, Revolute};
 
 use crate::joint_bench::{Bench, Ground, close};
 
-/// Hangs a body 1 m below a wheel, on a rope whose other end is at a fixed body, 5 m from the other wheel. The rope is
-/// taut when the body hangs `taut` m below its wheel. With `in_block`, a slider also holds the body on a vertical line,
-/// and the solver treats both joints as one block.
+/// Places a body 1 m below a wheel, on a rope whose other end is at a fixed body, 5 m below the other wheel. The rope
+/// becomes taut when the body is `taut` metres below its wheel. With `on_a`, the body is A of the pulley, otherwise it
+/// is B. With `in_block`, a slider also holds the body on a vertical line, and the solver treats both joints as one
+/// block.
 fn hang(ratio: Fx, (on_a, in_block): (bool, bool), taut: Fx) -> (Bench, BodyId, JointId) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(1), fx!(4)), fx!(0));
     let (ground, body) = (bench.a, bench.b);
@@ -39,7 +40,7 @@ fn each(mut test: impl FnMut(Fx, (bool, bool))) {
     }
 }
 
-/// A limit is inelastic. It stops the body where the rope is taut.
+/// The rope is an inelastic limit: it stops the body where it becomes taut.
 #[test]
 fn a_body_that_falls_into_its_rope_does_not_rebound() {
     each(|ratio, side| {
@@ -48,14 +49,14 @@ fn a_body_that_falls_into_its_rope_does_not_rebound() {
         bench.run(120, |tick, world| {
             let body = world.body(body).expect("there");
             let (y, up) = (body.position().y, body.velocity().y);
-            // The body falls for sqrt(2 * 4 / 10) = 0.89 s.
+            // Before that, the body falls freely for sqrt(2 * 4 / 10) = 0.89 s.
             assert!(y > fx!(-0.005), "{what}, tick {tick}: stretched to {y} m");
             assert!(up < fx!(0.1), "{what}, tick {tick}: rebounds at {up} m/s");
         });
     });
 }
 
-/// The rope yields by `g / (2 pi 60)^2` = 0.0704 mm, as all joints do, and carries 20 N.
+/// Under a weight of 20 N, the rope yields by `g / (2 pi 60)^2` = 0.0704 mm, as all joints do.
 #[test]
 fn a_weight_stretches_a_rope_as_little_as_any_joint() {
     each(|ratio, side| {
@@ -70,7 +71,8 @@ fn a_weight_stretches_a_rope_as_little_as_any_joint() {
     });
 }
 
-/// `NA wA + NB wB = 0`. Both wheels turn about one point, so they have no pitch point.
+/// `NA wA + NB wB = 0`, with the numbers of teeth `N` and the angular velocities `w`. Both wheels turn about the same
+/// point, so they have no pitch point.
 #[test]
 fn a_small_wheel_with_many_teeth_turns_at_the_ratio_of_the_teeth() {
     for (teeth, gyration) in [(1000, fx!(0.002)), (1000, fx!(0.005)), (1000, fx!(0.05)), (10, fx!(0.5))] {

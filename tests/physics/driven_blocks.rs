@@ -6,8 +6,8 @@ use lockstep2d::math::Fx;
 use lockstep2d::solver::{Distance, JointDef, Revolute};
 use lockstep2d::world::{Config, World};
 
-/// A boom of 5 m with 50 kg at its end is held by a strut whose motor may push with 100 kN. If motors were solved
-/// before the block, the strut would sink by 0.4 m.
+/// A boom of 5 m with 50 kg at its end is held by a strut. The motor of the strut extends it, with at most 100 kN. If
+/// motors were solved before the block, not with it, the strut would become shorter by 0.4 m.
 #[test]
 fn a_strut_lifts_a_loaded_boom() {
     let mut world = World::new(Config::default()).expect("valid");

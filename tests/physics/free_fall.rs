@@ -1,4 +1,4 @@
-//! Free fall is semi-implicit Euler, bit for bit: `v' = v + g h`, `x' = x + h v'`.
+//! Free fall is semi-implicit Euler, bit for bit: `v' = v + g h`, `x' = x + h v'` in each sub-step of `h` seconds.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn only_body(world: &World) -> BodyId {
     world.bodies().next().expect("a body").0
 }
 
-/// `g h` and every `v h` are rounded to nearest once.
+/// The engine rounds `g h` and each `h v'` once, to the nearest number of their formats. This test does the same.
 #[test]
 fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
@@ -64,8 +64,8 @@ fn a_thrown_body_keeps_its_velocity() {
         "error of {distance} m after 60 s and 300 m, expected at most 14400 roundings of 3.7 nm"
     );
     let turned = body.angle().to_radians();
-    // 60 rad are 10 turns minus 2.8319 rad. Each of 14400 sub-steps has an error of at most 3.7 nm at 0.35 m, which
-    // is 1.05e-8 rad. The sum is at most 1.5e-4 rad.
+    // 60 rad are 10 turns minus 2.8319 rad. Each of 14400 sub-steps has an error of at most 3.7 nm at the radius of
+    // gyration, 0.35 m, which is 1.05e-8 rad. The sum is at most 1.5e-4 rad.
     assert!((turned - fx!(-2.831853072)).abs() < fx!(0.0002), "{turned} rad");
 }
 

@@ -1,4 +1,5 @@
-//! Gears, racks and pulleys against theory. Numbers of teeth `N`, angular velocities `w`, torques `T`, inertias `I`:
+//! Gears, racks and pulleys against theory. Numbers of teeth `N`, angular velocities `w`, angular accelerations
+//! `alpha`, inertias `I`, torques `T` (for the pulley, the tension of the rope):
 //!
 //! ```text
 //! gear      NA wA + NB wB = 0;   torques NB TA = NA TB;   alpha_A = T / (IA + (NA / NB)^2 IB)
@@ -67,7 +68,7 @@ fn a_gear_without_teeth_cannot_be_fitted() {
     }
 }
 
-/// A motor turns pairs of wheels against a brake for a minute.
+/// In each case, a motor turns wheel A for a minute, against a brake on wheel B.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
@@ -84,7 +85,7 @@ fn the_ratio_is_kept_under_load() {
         let axle_a = hinge(&mut world, ground, a, Revolute::new().motor(fx!(9), fx!(400)));
         let axle_b = hinge(&mut world, ground, b, Revolute::new().motor(fx!(0), fx!(20)));
         let gear = fitted(&mut world, a, b, Gear::new(teeth[0], teeth[1]));
-        // Largest errors while the wheels spin up, and afterwards.
+        // The largest error while the wheels spin up, in the first 10 s, and the largest one afterwards.
         let mut worst = [fx!(0); 2];
         for tick in 0..3600 {
             world.step();
@@ -92,8 +93,8 @@ fn the_ratio_is_kept_under_load() {
             *worst = (*worst).max(world.joint_error(gear).expect("valid"));
         }
         run(&mut world, 0);
-        // Gears yield by a / (2 pi 60 Hz)^2 under an acceleration a: 4 mm where the brake holds a wheel of 0.3 kg.
-        // Gears without a pitch point have an error in radians, which is 2 pi for a tooth.
+        // Like all joints, gears yield by a / (2 pi 60 Hz)^2 under an acceleration a: by 4 mm where the brake holds a
+        // wheel of 0.3 kg. Without a pitch point, the error is an angle, and is 2 pi radians for a skipped tooth.
         let unit = if teeth[0] + teeth[1] == 0 { fx!(10) } else { fx!(1) };
         let most = [fx_mul(fx!(0.008), unit), fx_mul(fx!(0.006), unit)];
         assert!(worst[0] < most[0] && worst[1] < most[1], "{teeth:?}: the teeth are {worst:?} m apart");
@@ -118,7 +119,7 @@ fn torques_are_in_the_ratio_of_the_teeth() {
         world.apply_torque(a, fx!(6)).expect("valid");
         world.step();
     }
-    // 6 N m on A are 12 N m on B, which the brake holds. The force at the pitch point is 6 N m / 1 m.
+    // 6 N m on A become 12 N m on B, which the brake resists. The force at the pitch point is 6 N m / 1 m.
     let (_, torque) = world.joint_part_force(brake, JointPart::Motor).expect("valid");
     close(torque, fx!(12), fx!(0.02));
     let (force, torque) = world.joint_force(gear).expect("valid");
@@ -147,7 +148,7 @@ fn a_wheel_accelerates_with_the_inertia_of_both() {
     close(omega(&world, b), -expected / 3, expected / 500);
 }
 
-/// Energy is conserved for a minute.
+/// Three meshing wheels without motors or brakes keep their energy for a minute.
 #[test]
 fn a_free_train_keeps_its_energy() {
     let mut world = world(fx!(0));
@@ -186,7 +187,7 @@ fn a_planet_turns_as_its_arm_takes_it_around_the_sun() {
     close(omega(&world, planet), fx!(3), fx!(0.01));
 }
 
-/// A bar with two wheels in free space.
+/// A bar with two meshing wheels in free space keeps its momentum and angular momentum.
 #[test]
 fn free_wheels_on_a_bar_keep_their_momentum() {
     let mut rng = Rng::new(3);
@@ -233,7 +234,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
         .joint_along(ground, rack, Prismatic::new(), (fx!(0.5), fx!(0)), (fx!(0), fx!(1)))
         .expect("valid");
     world.add_joint(&slide).expect("valid");
-    // The axis of the rack points up, to the right of the wheel.
+    // The axis of the rack points up. Its pitch line is to the right of the wheel.
     let def = JointDef::new(pinion, rack, Rack::new(fx!(0.5))).angle_b(Angle::QUARTER);
     let def = world.fit_joint(&def).expect("valid");
     let joint = world.add_joint(&def).expect("valid");
@@ -248,7 +249,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     assert!(turned < fx!(-9));
     // The right side of a wheel that turns clockwise goes down.
     close(at(&world, rack).y, turned / 2, fx!(0.005));
-    // The crank holds 1.2 kg on a lever of half a metre.
+    // The motor of the crank carries the rack: 1.2 kg on a lever of half a metre.
     let (_, torque) = world.joint_part_force(crank, JointPart::Motor).expect("valid");
     close(torque, fx!(6), fx!(0.05));
 }
@@ -271,7 +272,7 @@ fn a_wheel_rolls_along_a_rack_that_is_fixed() {
     close(crate::energy(&world), start, start / 200);
 }
 
-/// Two weights on a rope.
+/// Two weights at the ends of a rope over two wheels, 20 m below these.
 fn atwood(world: &mut World, masses: [Fx; 2], ratio: Fx) -> ([BodyId; 2], JointId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.3)).expect("valid"));
     let weights = [(fx!(-2), masses[0]), (fx!(2), masses[1])].map(|(x, mass)| {
@@ -313,7 +314,7 @@ fn weights_on_a_rope_accelerate_as_theory_says() {
             "{}",
             world.joint_error(rope).expect("valid")
         );
-        // A fall loses m g^2 h t / 2 to the integration, 0.1 J for each kg.
+        // The integration error of a free fall for the time t is a loss of m g^2 h t / 2, which is 0.1 J for each kg.
         close(crate::energy(&world), start, (masses[0] + masses[1]) * 3 / 20);
     }
 }
@@ -332,7 +333,7 @@ fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let JointKind::Pulley(pulley) = &mut longer.kind else { panic!("a pulley") };
     pulley.length += fx!(3);
     world.set_joint(rope, &longer).expect("valid");
-    // The rope is taut again after 0.45 s.
+    // The weights fall freely until the rope is taut again, after 0.45 s.
     run(&mut world, 24);
     for body in weights {
         close(world.body(body).expect("valid").velocity().y, fx!(-4), fx!(0.001));
@@ -378,7 +379,7 @@ fn couplings_out_of_range_are_refused() {
     );
 }
 
-/// The arm of a rack at the other end of the world saturates.
+/// The lever arm of a rack at the other end of the world exceeds its format and saturates. Nothing may overflow.
 #[test]
 fn a_rack_may_be_at_the_other_end_of_the_world() {
     let mut world = world(fx!(0));

@@ -25,7 +25,7 @@ fn random_shape(rng: &mut Rng) -> ShapeDef {
     ShapeDef::new(shape.expect("valid")).restitution(restitution)
 }
 
-/// A pit of 3 to 8 m with 5 to 24 bodies.
+/// A pit that is 3 to 8 m wide, with 5 to 24 bodies above it.
 fn heap(seed: u64, rolling_resistance: Fx) -> World {
     let mut rng = Rng::new(seed);
     let mut world = World::default();
@@ -51,7 +51,7 @@ fn heap(seed: u64, rolling_resistance: Fx) -> World {
     world
 }
 
-/// Steps until all bodies sleep. Returns the largest kinetic energy in J.
+/// Steps until all bodies sleep, but at most for `seconds`. Returns the largest kinetic energy on the way in J.
 fn settle(world: &mut World, seconds: u32) -> Fx {
     let mut largest = Fx::ZERO;
     for _ in 0..seconds * 60 {
@@ -64,7 +64,7 @@ fn settle(world: &mut World, seconds: u32) -> Fx {
     largest
 }
 
-/// Without resistance, round bodies may roll to and fro for ever.
+/// Without rolling resistance, round bodies may roll to and fro for ever.
 #[test]
 fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     sweep::for_each((0..sweep::size(2400, 60)).collect(), |seed: u64| {

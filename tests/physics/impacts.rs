@@ -1,5 +1,5 @@
 //! Friction, angular momentum and energy of an impact do not depend on how far the bodies are apart at the start of the
-//! tick.
+//! tick. A `phase` of 0 to 15 in these tests changes this distance by sixteenths of the movement in a tick.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -31,7 +31,8 @@ fn kinetic(world: &World) -> Fx {
     dynamic.fold(Fx::ZERO, |sum, (_, body)| sum + body.kinetic_energy())
 }
 
-/// A spinning disc that does not slide rolls at `r w / 3`: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
+/// A spinning disc falls onto a floor and then rolls at `r w / 3` without sliding, because of
+/// `m k^2 w = m (k^2 + r^2) w'` and `k^2 = r^2 / 2`.
 #[test]
 fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     let speeds = [5, 10, 20, 40, 100, 200].into_iter();
@@ -88,8 +89,8 @@ fn colliding_balls_keep_their_angular_momentum() {
     );
 }
 
-/// A bar falls flat onto a ledge below one half of it. The impulse points upwards, so the bar hardly moves sideways: at
-/// most as fast as in Box2D.
+/// A bar falls flat onto a ledge that is below one half of it. The impulse points upwards, so the bar must hardly move
+/// sideways. The limits are the sideways speeds in Box2D.
 #[test]
 fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     let cases = [60u32, 240].into_iter().flat_map(|rate| {
@@ -155,7 +156,8 @@ fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDe
     }
 }
 
-/// The body has restitution 1. Some shapes have corners, and two thirds of the cases have friction.
+/// A single body with restitution 1 moves in a room for a minute. Some of the shapes have corners, and two thirds of
+/// the cases have friction.
 #[test]
 fn a_closed_room_keeps_its_energy() {
     let shapes = |at: usize| match at {
@@ -191,7 +193,7 @@ fn a_closed_room_keeps_its_energy() {
     });
 }
 
-/// Bodies often hit a wall and another body in one sub-step.
+/// In these cases, bodies often hit a wall and another body in the same sub-step.
 #[test]
 fn several_bodies_in_a_closed_room_keep_its_energy() {
     let shapes = [rectangle(fx!(0.5), fx!(0.5)), rectangle(fx!(1), fx!(0.1)), circle(fx!(0.5))];
@@ -254,7 +256,7 @@ fn a_corner_with_friction_adds_no_energy() {
     });
 }
 
-/// The position equals that of a ball that rebounds exactly at the time of each impact.
+/// The position stays within 5 mm of that of a ball that rebounds exactly at the time of each impact.
 #[test]
 fn a_ball_between_walls_keeps_time() {
     for speed in [fx!(3), fx!(10), fx!(40), fx!(123)] {
@@ -277,8 +279,8 @@ fn a_ball_between_walls_keeps_time() {
     }
 }
 
-/// A ball in a wedge of 27 degrees rests between the walls. The combined friction is 0.35, which holds the ball
-/// wherever it stops.
+/// A ball falls into a wedge of 27 degrees, and comes to rest between its walls. The combined friction of ball and
+/// walls is 0.35, so the ball sticks wherever it stops.
 #[test]
 fn a_ball_in_a_wedge_rests_between_the_walls() {
     let speeds = [5, 20, 40, 100, 200].into_iter();

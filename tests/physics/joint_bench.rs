@@ -1,4 +1,4 @@
-//! Bodies of given masses without shapes, and one joint to measure.
+//! A world with two bodies of given masses and without shapes, to which tests add the joints that they measure.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;
@@ -23,7 +23,8 @@ pub(crate) enum Ground {
 pub(crate) const RATE: i64 = 240;
 
 impl Bench {
-    /// Puts A at the origin and B at `place`. B has 2 kg and a radius of gyration of 0.5 m.
+    /// Puts A at the origin and B at `place`, turned by `angle` radians. B has 2 kg and a radius of gyration of 0.5 m.
+    /// `gravity` acts along y, in m/s².
     pub(crate) fn new(ground: Ground, gravity: Fx, place: Vec2<Fx>, angle: Fx) -> Self {
         Self::with_mass(ground, gravity, (fx!(2), fx!(0.5)), place, angle)
     }
@@ -35,7 +36,7 @@ impl Bench {
         place: Vec2<Fx>,
         angle: Fx,
     ) -> Self {
-        // A body that creeps to its target would fall asleep on the way.
+        // Bodies do not sleep here, because a body that creeps to its target would fall asleep on the way.
         let config = Config { gravity: Vec2::new(fx!(0), gravity), sleeping: false, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
@@ -73,7 +74,8 @@ pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
     lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
 }
 
-/// Choices of A, with the effective mass and inertia of A and B. B has 2 kg and 0.5 kg m².
+/// Choices of A, each with the effective mass in kg and the effective inertia in kg m² of A and B together. B has 2 kg
+/// and 0.5 kg m².
 pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
     let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));
     [(Ground::Fixed, fx!(2), fx!(0.5)), free(fx!(0.02)), free(fx!(200))]

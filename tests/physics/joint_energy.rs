@@ -1,6 +1,6 @@
-//! Joints without driving motors feed no energy into an assembly: kinetic, potential and spring energy grow by at most
-//! a hundredth, except in [`BEYOND`]. Assemblies have 3 to 12 bodies, mass ratios up to 100 and arms up to 16 radii of
-//! gyration.
+//! Joints without driving motors feed no energy into an assembly: the sum of kinetic, potential and spring energy grows
+//! by at most a hundredth, except in [`BEYOND`]. Assemblies have 3 to 12 bodies, mass ratios up to 100 and arms up to
+//! 16 radii of gyration.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -17,8 +17,8 @@ use crate::sweep;
 /// 20 s at 60 ticks a second.
 const TICKS: u32 = 1200;
 
-/// Exceptions, which gain 2 to 39 %. Hard pulls at long arms turn a body too far within a sub-step: `h^2 F r / I` is
-/// above 1 (docs/DESIGN.md, "Result and known limits").
+/// Exceptions, which gain 2 to 39 % of energy. Strong pulls `F` at long arms `r` turn a body of inertia `I` too far
+/// within a sub-step `h`: `h^2 F r / I` is above 1 (docs/DESIGN.md, "Result and known limits").
 const BEYOND: [Case; 6] = [
     Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 12 },
     Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
@@ -28,12 +28,12 @@ const BEYOND: [Case; 6] = [
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 45 },
 ];
 
-/// Assemblies in which heavy bodies pull a light one so hard that joints open by metres and values are clamped. They
-/// gain no energy.
+/// Assemblies in which heavy bodies pull a light one so hard that joints open by metres and values are clamped. Like
+/// the others, these assemblies must gain no energy.
 const GAPING: [Case; 2] = [
-    // 300 kg hang on a disc of 1 kg, at 15 radii of gyration.
+    // A load of 300 kg hangs on a disc of 1 kg, at 15 radii of gyration from the centre of the disc.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
-    // In tick 112, three bodies of 100 kg pull a body of 1 kg at 21 m/s.
+    // In tick 112, three bodies of 100 kg that move at 21 m/s pull a body of 1 kg by springs.
     Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
 ];
 
@@ -83,16 +83,17 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// The joint pushes both bodies at one point. If it pushed each at its own anchor, angular momentum would grow where
-/// the anchors are apart. Energy would then grow in 9 % of these assemblies, by up to 50 times.
+/// A joint applies its impulse to both bodies at one point. If it applied the impulse to each body at the body's own
+/// anchor, angular momentum would grow whenever the anchors are apart. Energy would then grow in 9 % of these
+/// assemblies, by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);
     never_gain(Mix::Weld, Start::Hang);
 }
 
-/// Without geometric stiffness, a hanging assembly would gain up to 934 446 times its energy. With geometric stiffness,
-/// the worst hanging assembly of [`BEYOND`] gains 23 %.
+/// Without geometric stiffness, a hanging assembly would gain up to 934 446 times its initial energy. With geometric
+/// stiffness, the worst hanging assembly of [`BEYOND`] gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
@@ -108,8 +109,8 @@ fn assemblies_beyond_the_engine_stay_together() {
     });
 }
 
-/// In free space, momentum is conserved. Angular momentum changes where geometric stiffness acts: in at most one of 50
-/// assemblies, and by up to 5 % in 20 s.
+/// In free space, momentum is conserved. Angular momentum changes where geometric stiffness acts: by up to 5 % in 20 s,
+/// and by more than 0.1 % in at most one of 50 assemblies.
 #[test]
 fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     let seeds = sweep::size(60, 2);
@@ -134,8 +135,8 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     assert!(changed * 50 <= count, "the angular momentum of {changed} of {count} assemblies changed");
 }
 
-/// If the stiffness of springs along a line depended on the pose, 10 of 60 assemblies of wheels would gain energy,
-/// and 10 of 60 assemblies of rods, ropes and springs.
+/// If the stiffness of springs along a line depended on the pose, energy would grow in 10 of 60 assemblies of wheels,
+/// and in 10 of 60 assemblies of rods, ropes and springs.
 #[test]
 fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     for mix in [Mix::Wheel, Mix::Rod, Mix::Prismatic] {
@@ -144,7 +145,7 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     }
 }
 
-/// Without the geometric stiffness of sliders, these assemblies would gain up to 7600 times their energy.
+/// Without the geometric stiffness of sliders, these assemblies would gain up to 7600 times their initial energy.
 #[test]
 fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
@@ -160,8 +161,8 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     });
 }
 
-/// If the springs were solved before the blocks, 6 of 720 assemblies with springs of motor joints would gain up to 40
-/// times their energy. So would 10 of 720 with springs of limited force.
+/// If these springs were solved before the blocks of joints, 6 of 720 assemblies with springs of motor joints and 10 of
+/// 720 with springs of limited force would gain up to 40 times their initial energy.
 #[test]
 fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     for mix in [Mix::MotorSpring, Mix::LimitedSpring] {
@@ -171,13 +172,14 @@ fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     }
 }
 
-/// A hub with limbs, each turned by its own angle and joined half a metre from the hub's centre.
+/// A hub with `limbs` limbs at equal angles. Each limb points away from the hub and is joined to it half a metre from
+/// the hub's centre.
 struct Star {
     joint: JointKind,
     hub: ShapeDef,
     limb: ShapeDef,
     limbs: i64,
-    /// Half the length of a limb.
+    /// Half the length of a limb in metres.
     reach: Fx,
 }
 
@@ -243,9 +245,9 @@ fn a_star_of_welds_that_is_hit_gains_no_energy() {
     }
 }
 
-/// A limb is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. The solver predicts at
-/// most 0.04 radians of this rotation. If it predicted up to 0.25 radians, the energy of a box with four boxes as limbs
-/// would rise to 9 times its initial value.
+/// One limb is hit at its far end, so hard that its centre moves at up to 40 m/s. At 30 m/s and 30 Hz, the limb turns
+/// by some 0.6 radians in a sub-step. The solver predicts at most 0.04 radians of this rotation. If it predicted up to
+/// 0.25 radians, the energy of a box with four boxes as limbs would rise to 9 times its initial value.
 #[test]
 fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -279,7 +281,8 @@ fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     });
 }
 
-/// Some of the bodies are thrown, or the star falls straight down. The star sleeps after a minute.
+/// The star falls straight down (`throw` 0), or about half of its bodies are thrown. In both cases it sleeps after a
+/// minute.
 #[test]
 fn a_star_of_welds_comes_to_rest_on_a_floor() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
@@ -310,12 +313,12 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
     });
 }
 
-/// Neither clearing the scratch memory nor restoring a state changes a bit of later states.
+/// Restoring a state and clearing the scratch memory leave all bits of later states unchanged.
 #[test]
 fn a_block_depends_on_nothing_but_the_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
     let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
-    // The last case has geometric stiffness.
+    // Geometric stiffness acts in the last case.
     for case in hit.into_iter().chain([BEYOND[1]]) {
         let build = || case.build().world;
         let (mut whole, mut dropped) = (build(), build());

@@ -8,7 +8,8 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close};
 
-/// A rod of 2 m swings with the period `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`.
+/// A body on a rod of length `L` = 2 m without mass swings with the period `T = 2 pi sqrt(L / g) (1 + a^2 / 16)`. The
+/// amplitude `a` is 0.1 radians.
 #[test]
 fn a_rod_is_a_pendulum() {
     let (sin, cos) = (fx!(0.0998334), fx!(0.9950042));
@@ -31,13 +32,14 @@ fn a_rod_is_a_pendulum() {
     close(period, small + small / 1600, small / 200, "s");
 }
 
-/// A slider at 30 degrees, with its load 1 m off the axis, slides without friction and does not turn.
+/// The axis of a slider descends at 30 degrees, 1 m beside the centre of its load. The load slides without friction and
+/// does not turn.
 #[test]
 fn a_slider_slides_down_its_slope_and_does_not_turn() {
     for ground in [Ground::Fixed, Ground::Free(fx!(1000000))] {
         let mut bench = Bench::new(ground, fx!(-10), Vec2::ZERO, fx!(0));
         if let Ground::Free(_) = ground {
-            // Gravity would accelerate the ground as well.
+            // Gravity would accelerate the ground as well, so a force on the load replaces it.
             bench.world.set_gravity(Vec2::ZERO).expect("valid");
         }
         let tilt = Angle::from_degrees(fx!(-30));
@@ -58,12 +60,14 @@ fn a_slider_slides_down_its_slope_and_does_not_turn() {
             });
         }
         let along = bench.world.joint_translation(joint).expect("there").x;
-        // The distance is g/2 sin 30 t^2, plus half a sub-step of the integration.
+        // The distance after 2 s is `g / 2 sin(30 degrees) t^2` = 10 m. The integration adds the motion of half a
+        // sub-step.
         close(along, fx!(10), fx!(0.05), "m");
     }
 }
 
-/// Builds planks of 1 m and 1 kg that are welded end to end and to a wall. Returns the world and the height of the tip.
+/// Builds planks of 1 m and 1 kg that are welded end to end and to a wall. Returns the world and the height of the tip
+/// after 10 s.
 fn cantilever(planks: i64, kind: Weld) -> (World, Fx) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };
@@ -97,9 +101,10 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
     }
 }
 
-/// A soft joint yields to a load `m g` on a mass `m` by `g / omega^2`. With two rods, the upper hinge bears both, at 60
-/// Hz. With one rod, the hinge connects a fixed body and a body without other joints, which makes it an anchored hinge.
-/// An anchored hinge has 120 Hz, and yields a quarter as much to an equal load.
+/// A soft joint yields to a load `m g` on a mass `m` by `g / omega^2`. With two rods, the upper hinge carries both of
+/// them, with a stiffness of 60 Hz. With one rod, the hinge connects a fixed body and a body without other joints,
+/// which makes it an anchored hinge. An anchored hinge has a stiffness of 120 Hz, so it yields a quarter as much to an
+/// equal load.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {
@@ -167,7 +172,8 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A mass ratio of 100 makes joints of any size sag by some centimetres. The smallest joints get equal masses.
+        // With a mass ratio of 100, joints of any size sag by some centimetres. This is more than the size of the
+        // smallest joints, so these get equal masses.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

@@ -1,4 +1,4 @@
-//! Limits hold within a hundredth of their range.
+//! Joints pass the limits of their range by at most a hundredth of the range.
 
 use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,8 @@ use lockstep2d::world::{Config, World};
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// A joint driven up and then down at 300 m/s² or rad/s² reaches both ends and goes no further.
+/// Drives a joint towards its upper limit, and another one towards its lower limit. A motor may accelerate a joint at
+/// 300 m/s² or rad/s². Each joint must reach its limit and pass neither end of the range.
 fn stays(
     kind: impl Fn(Fx, Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -45,7 +46,7 @@ fn a_slider_and_a_suspension_stop_at_their_limits() {
     let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
     let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
     stays(kind, place, range, translation);
-    // A spring with a target 10 m away drives the joint.
+    // A spring with its target at +10 m or -10 m drives the joint.
     let kind =
         |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
     stays(kind, place, range, translation);
@@ -74,7 +75,7 @@ fn a_limit_bears_a_falling_rod() {
     });
     assert!(lowest > fx!(-1.02), "{lowest} rad");
     let (force, torque) = bench.world.joint_force(joint).expect("there");
-    // The hinge carries 20 N, and the stop 20 N times 2 m cos 1.
+    // The hinge carries the weight of 20 N, and the stop carries its torque of 20 N x 2 m x cos(1) = 21.6 N m.
     close(force.y, fx!(20), fx!(0.2), "N");
     close(torque, fx!(21.612), fx!(0.3), "N m");
 }
@@ -100,7 +101,7 @@ fn a_rope_is_slack_and_then_taut() {
     close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
 }
 
-/// A motor of up to 10^9 N m between two boxes hits the limit once and rests there. If motor and limit acted against
+/// A motor of up to 10^9 N m turns a hinge against its limit, where the hinge stays. If motor and limit acted against
 /// each other, their impulses would grow until the hinge turned through the limit, by up to 266 rad.
 #[test]
 fn a_motor_of_any_force_does_not_turn_a_hinge_through_its_limit() {
@@ -143,9 +144,9 @@ fn the_angle_of_a_hinge_counts_turns() {
         ticks += 1;
         assert!(ticks < 200);
     }
-    // The hinge turns by 0.5 rad in a tick, from minus a quarter turn.
+    // The angle starts at minus a quarter turn, and grows by 0.5 rad in a tick.
     close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
-    // The hinge turns to the lower limit, 9 turns away.
+    // A spring turns the hinge to the lower limit, 9 turns away.
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
     let nine = TAU * 9;
     let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);
@@ -154,8 +155,8 @@ fn the_angle_of_a_hinge_counts_turns() {
     close(bench.world.joint_angle(joint).expect("there"), -nine, nine / 100, "rad");
 }
 
-/// The limit changes so that the slider or strut is beyond it. The motor or brake of the joint has no largest force.
-/// The gap to the limit shrinks to `e^-60` of its size in a second.
+/// While the joint is at 3 m, its upper limit changes to 2 m. The motor of the joint has no largest force; at a speed
+/// of 0 it acts as a brake. The gap to the limit shrinks to `e^-60` of its size in a second.
 #[test]
 fn a_strong_motor_returns_to_a_limit_that_it_is_beyond() {
     let kinds: [fn(Fx) -> JointKind; 2] = [

@@ -54,7 +54,7 @@ fn motors_have_the_acceleration_of_theory() {
     accelerates(kind, Vec2::ZERO, Load::Mass, drift);
 }
 
-/// With 2 kg at 1 m from the hinge, a motor of 18 N m yields and one of 22 N m lifts.
+/// With 2 kg at 1 m from the hinge, a motor of 18 N m yields and a motor of 22 N m lifts the load.
 #[test]
 fn a_motor_stalls_under_a_larger_load() {
     for (torque, rises) in [(fx!(18), false), (fx!(22), true)] {
@@ -68,7 +68,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // The weight is 20 N.
+    // The load of 20 N now hangs on a vertical slider.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);
@@ -111,7 +111,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
     }
 }
 
-/// The hinge has friction, a limit and a spring, as in a ragdoll.
+/// A hinge with friction, a limit and a spring, as in a ragdoll.
 #[test]
 fn a_stiff_joint_comes_to_rest() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0.3), fx!(0)), fx!(0));
@@ -126,13 +126,13 @@ fn a_stiff_joint_comes_to_rest() {
     let angle = bench.world.joint_angle(joint).expect("there");
     bench.run(60, |_, _| {});
     close(bench.world.joint_angle(joint).expect("there"), angle, fx!(0.001), "at rest");
-    // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's 6 cos angle, and that of
-    // friction at most 0.5.
+    // Torques in N m: that of the spring is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), that of the weight is 6
+    // cos(angle), and that of friction is at most 0.5.
     assert!(fx!(0.01) < angle + fx!(0.05) && angle < fx!(0.05), "{angle} rad");
 }
 
-/// A largest torque of `Fx::MAX` means no limit. A torque of `Fx::MAX` N m would accelerate a disc of 31 kt by only
-/// 0.014 rad/s².
+/// `Fx::MAX` as the largest torque means no limit. If it were taken as a number of N m, it would accelerate a disc of
+/// 31 kt by only 0.014 rad/s².
 #[test]
 fn motors_without_a_limit_move_any_mass_at_once() {
     let turning: [JointKind; 3] = [

@@ -4,7 +4,9 @@
 //! v' = (v - K h omega^2 x) / (1 + K (2 zeta h omega + h^2 omega^2)),   x' = x + h v'
 //! ```
 //!
-//! `K` is 1, except where a spring at the end of an arm also turns the bodies, or where two springs act.
+//! `x` is the stretch, `v` its velocity, `h` the sub-step and `zeta` the damping ratio. The mobility `K` is 1 for one
+//! spring between the centres of two bodies. It is larger if the spring acts at the end of an arm and so also turns a
+//! body, and 2 if two springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -14,7 +16,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, RATE};
 
-/// Spring in theory. A tick has four sub-steps.
+/// Simulates the formula above. A tick has four sub-steps.
 struct Oscillator {
     x: Fx,
     v: Fx,
@@ -37,7 +39,7 @@ impl Oscillator {
     }
 }
 
-/// Expects that a spring stretched by 0.5 follows theory for at least three periods.
+/// Expects that a spring stretched by 0.5 (m or rad) follows the formula for at least three periods.
 fn follows(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -114,8 +116,9 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The stiffness of a spring is chosen for two point masses. With the reduced mass `m`, the spring swings
-/// `sqrt(1 + m r^2 / (mB k^2))` times as fast at the end of an arm `r`.
+/// The frequency of a spring is defined for two point masses. If a spring acts at the end of an arm `r` of B, it swings
+/// `sqrt(1 + m r^2 / (mB k^2))` times as fast. `m` is the reduced mass, `mB` the mass of B and `k` its radius of
+/// gyration.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
@@ -204,7 +207,7 @@ fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
     }
 }
 
-/// At rest the spring has reached its target.
+/// When the body is at rest, the spring has reached its target.
 #[test]
 fn a_spring_on_an_arm_comes_to_rest_where_it_pulls() {
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(1)), fx!(1));

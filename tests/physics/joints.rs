@@ -69,7 +69,7 @@ fn a_grid_of_19_800_hinges_stays_calm() {
     });
 }
 
-/// Potential energy is measured from the hinge.
+/// The hinge is at height 0, so potential energy is measured from the hinge.
 #[test]
 fn a_chain_carries_a_hundredfold_weight() {
     let mut game = open("chain");

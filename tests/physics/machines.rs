@@ -1,4 +1,5 @@
-//! Errors are mostly within 1.2 times those of Box2D 3.2 in the same scenes.
+//! Overlaps, speeds and gaps of joints in scenes with machines. Most bounds are within 1.2 times the values of Box2D
+//! 3.2 in the same scenes.
 
 use lockstep2d::body::Body;
 use lockstep2d::fx;
@@ -36,8 +37,8 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// In Box2D, the fall has an overlap of 5.0 mm. The overlap of a single fall is partly chance. Here it is at most 6 mm
-/// in 15 of 16 falls, and at most 10 mm in the remaining fall.
+/// In Box2D, the largest overlap of the fall is 5.0 mm. It depends on chance, so this test plays 16 falls with random
+/// initial velocities: the largest overlap is at most 6 mm in 15 falls, and at most 10 mm in the remaining one.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);
@@ -59,7 +60,8 @@ fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
 }
 
 /// Ragdolls land at 27 m/s, half a metre apart. At most 0.8 % of the contact points are deeper than 20 mm. The share
-/// would be larger if bones got contacts for predicted impacts, or if two floor tiles counted as a wedge.
+/// would be larger if bones got speculative contacts for predicted impacts, or if a bone that lands on two floor tiles
+/// counted as wedged.
 #[test]
 fn ragdolls_that_rain_hardly_sink_into_each_other() {
     let (mut deep, mut count) = (0, 0);

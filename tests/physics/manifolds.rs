@@ -1,4 +1,4 @@
-//! Contact points at corners of rounded shapes, and on outlines that hardly bend.
+//! Contact points at corners of rounded shapes, and on polygons with almost parallel neighbouring faces.
 
 use lockstep2d::body::{Geometry, Polygon};
 use lockstep2d::fx;
@@ -13,8 +13,8 @@ fn gap(a: &Probe, b: &Probe) -> Option<Fx> {
     manifold.points().iter().map(|point| Fx::from(point.separation)).min()
 }
 
-/// For shapes that are apart, the gap equals the distance. The order matters little: the second shape's face becomes
-/// the reference face only if it is better by 0.5 mm.
+/// For shapes that are apart, the gap equals the distance. Exchanging the shapes changes the gap by at most 0.51 mm: a
+/// face of the second shape becomes the reference face only if its separation is larger by 0.5 mm.
 #[test]
 fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     let (count, tolerance) = (sweep::size(100_000, 10_000), fx!(0.00051));
@@ -47,7 +47,7 @@ fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
 }
 
 /// Contact points lie half-way between the surfaces. This holds even for triangles up to 117 m long and micrometres
-/// thick, whose faces differ by less than the rounding of their normals.
+/// thick: the directions of their faces differ by less than the rounding of the normals.
 #[test]
 fn contact_points_lie_on_outlines_that_hardly_bend() {
     let (mut rng, mut points) = (Rng::new(67), 0);

@@ -1,8 +1,8 @@
 //! A joint between two free bodies conserves momentum and angular momentum: its impulses act at one point, however far
 //! its anchors are apart.
 //!
-//! Momentum is compared with `sum m |v|`, and angular momentum about the common centre of mass with `sum m |r x v| + m
-//! k^2 |w|`.
+//! The change of momentum is compared with `sum m |v|`. The change of angular momentum about the common centre of mass
+//! is compared with `sum m |r x v| + m k^2 |w|`.
 
 use lockstep2d::body::{Body, BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -12,7 +12,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Momentum, angular momentum about the common centre of mass, and the sums of their absolute parts.
+/// Momentum, angular momentum about the common centre of mass, and the sums of the absolute values of their terms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Momentum {
     linear: Vec2<Fx>,
@@ -55,7 +55,7 @@ impl Choice {
         self.0.range(-most, most)
     }
 
-    /// Force that is unlimited in a quarter of the cases.
+    /// Force in N. A quarter of the forces are unlimited.
     fn force(&mut self) -> Fx {
         if self.one_in(4) { Fx::MAX } else { self.0.range(fx!(0.1), fx!(300)) }
     }
@@ -68,7 +68,7 @@ impl Choice {
         if self.one_in(4) { Fx::ZERO } else { self.0.range(fx!(0), fx!(2)) }
     }
 
-    /// Speed that is 0 in half of the cases, which makes a motor act as friction.
+    /// Speed in m/s or rad/s. Half of the speeds are 0, which makes a motor act as friction.
     fn speed(&mut self) -> Fx {
         if self.one_in(2) { Fx::ZERO } else { self.within(fx!(2)) }
     }
@@ -166,7 +166,7 @@ impl Choice {
     }
 }
 
-/// Two bodies and a joint. If the joint holds rigidly, its anchors are in place at first.
+/// Two bodies and a joint. The parts of the joint that are rigid are satisfied at the start.
 fn pair(number: u64) -> (World, JointKind) {
     let mut choice = Choice(Rng::new(number));
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -191,7 +191,8 @@ fn pair(number: u64) -> (World, JointKind) {
     (world, kind)
 }
 
-/// Largest relative changes of momentum and angular momentum within 10 s.
+/// Largest changes of momentum and of angular momentum within 10 s, each relative to the sum of the absolute values of
+/// its terms.
 fn changes(number: u64) -> (Fx, Fx) {
     let (mut world, kind) = pair(number);
     let start = Momentum::of(&world);
@@ -210,7 +211,7 @@ fn changes(number: u64) -> (Fx, Fx) {
     (relative(worst.linear.x, worst.linear_size), relative(worst.angular, worst.angular_size))
 }
 
-/// Hinges and rigid welds are not among these joints, because they are solved separately, in batches.
+/// Hinges and rigid welds are left out, because they are solved by other code, in batches.
 #[test]
 fn a_joint_between_free_bodies_keeps_their_momentum() {
     sweep::for_each((0..sweep::size(1000, 250)).collect(), |number| {
@@ -221,8 +222,8 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// If the friction held up the higher ball, it would also turn the lower ball, because nothing else could bear the
-/// torque of the friction.
+/// A motor joint between two balls acts as friction. If it held up the higher ball, it would also turn the lower ball,
+/// because nothing else could bear the torque of the friction.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -248,8 +249,8 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
     }
 }
 
-/// The friction holds a weight of 10 N if the largest force of the friction suffices. Otherwise the weight falls with
-/// the remaining acceleration.
+/// A motor joint with a speed of 0 acts as friction. It holds a weight of 10 N if its largest force suffices. Otherwise
+/// the weight falls with the remaining acceleration.
 #[test]
 fn friction_holds_a_falling_body_only_if_it_suffices() {
     for (force, falls) in [(fx!(9.5), true), (fx!(10.5), false)] {

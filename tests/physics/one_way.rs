@@ -37,7 +37,8 @@ fn height(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").position().y
 }
 
-/// Bodies start 3 m below the platform. They jump through (10 m/s suffice for 5 m), or fall back half-way.
+/// Bodies start 3 m below the top of the platform. At 10 m/s, which suffices for a rise of 5 m, and at 30 m/s they jump
+/// through and land. At lower speeds they turn round half-way and fall back.
 #[test]
 fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
     for platform in platforms() {

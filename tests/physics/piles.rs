@@ -31,7 +31,8 @@ fn a_pyramid_of_30_rows_comes_to_rest_and_loses_no_warm_start() {
     assert!(fastest < fx!(0.00001), "{fastest} m/s after 10 s");
 }
 
-/// Box2D 3.2 has, after 300 steps, the top at 98.77 m, a deepest overlap of 21.2 mm and a mean speed of 0.017 m/s.
+/// In Box2D 3.2, after 300 steps, the top is at 98.77 m, the deepest overlap is 21.2 mm and the mean speed is 0.017
+/// m/s.
 #[test]
 fn a_pyramid_of_5050_boxes_stands() {
     let mut game = open("large_pyramid");
@@ -54,7 +55,7 @@ fn a_box_rests_on_one_of_a_hundredth_of_its_mass() {
     assert!(speed_max(world) < fx!(0.0001), "{} m/s", speed_max(world));
 }
 
-/// Baumgarte contacts remove a share of the overlap beyond a slop in every sub-step.
+/// In every sub-step, Baumgarte contacts remove a share of that part of an overlap that exceeds the slop.
 #[test]
 fn a_stack_stands_on_baumgarte_contacts() {
     use lockstep2d::lockstep::{Game, Sandbox};

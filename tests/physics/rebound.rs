@@ -7,7 +7,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Drops a ball, and returns the highest positions of its lowest point between impacts.
+/// Drops a ball with its lowest point at `height`. Returns the largest height of this point after each impact.
 fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     rebounds_above(e, None, height, ticks)
 }
@@ -38,8 +38,9 @@ fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<F
     heights
 }
 
-/// The rebound reaches `e^2 H`. A body moves with the velocity at the middle of a sub-step, so it may rise up to
-/// `g h^2 / 8` above the parabola. Positions are read at ticks, so the highest one may be below the top.
+/// The rebound reaches `e^2 H`. In each sub-step of length `h`, a body moves with the velocity at the middle of the
+/// sub-step, so it may rise up to `g h^2 / 8` above the parabola. Positions are read at ticks, so the highest one may
+/// be below the top.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     for (e, height) in [
@@ -62,10 +63,11 @@ fn a_rebound_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Largest height in metres of the top of a parabola above the position at the nearest tick: `g dt^2 / 8`.
+/// Largest height in metres of the top of a parabola above the position at the nearest tick: `g dt^2 / 8`, with `dt` of
+/// a tick.
 const BETWEEN_TICKS: Fx = fx!(0.00035);
 
-/// Largest height in metres above the parabola: `g h^2 / 8`.
+/// Largest height in metres of a ball above the parabola: `g h^2 / 8`, with a sub-step `h`.
 const ABOVE_THE_TOP: Fx = fx!(0.000022);
 
 #[test]
@@ -106,7 +108,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
                     highest = highest.max(body.position().y - half_height);
                 }
                 let spin = body.angular_velocity().abs();
-                // The second impact, after tick 70 or later, may be slightly tilted.
+                // The second impact, in tick 70 or later, may be slightly tilted.
                 let bound = if tick < 70 { fx!(0.02) } else { fx!(0.2) };
                 assert!(spin < bound, "{half_width} x {half_height}, e {e}, tick {tick}: {spin} rad/s");
             }
@@ -155,7 +157,8 @@ fn the_threshold_of_the_world_is_the_default_of_a_material() {
     }
 }
 
-/// A ball bounces at or above the threshold. Of two thresholds, the smaller one applies.
+/// A ball bounces if its speed is at or above the threshold. Of the thresholds of the two shapes, the smaller one
+/// applies.
 #[test]
 fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     let speed = fx!(0.5);
@@ -176,7 +179,7 @@ fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     }
 }
 
-/// Speed in m/s a second after an impact with restitution 1, without gravity.
+/// Speed of a ball in m/s a second after an impact with restitution 1, without gravity.
 fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");
@@ -230,8 +233,8 @@ fn elastic_falls_rebound_to_the_same_height() {
     }
 }
 
-/// `|v'| = e |v|` in whichever sub-step the impact occurs, up to the largest speed of a definition. A light ball that a
-/// ball of ten times its mass hits leaves it with 20/11 of its speed.
+/// `|v'| = e |v|` in whichever sub-step the impact occurs, for all speeds that a body definition allows. When a ball
+/// hits a ball of a tenth of its mass, the light ball leaves with 20/11 of the speed of the heavy one.
 #[test]
 fn fast_rebounds_keep_their_speed() {
     let speed_after = |speed: Fx, gap: Fx, target: (BodyDef, Fx)| {
@@ -259,7 +262,7 @@ fn fast_rebounds_keep_their_speed() {
     }
 }
 
-/// The wall returns `e` times the speed. The change of velocity is below 511 m/s, the limit of an impulse.
+/// The wall returns `e` times the speed. The velocity changes by at most 500 m/s. The limit for an impulse is 511 m/s.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));

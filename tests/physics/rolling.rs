@@ -57,7 +57,8 @@ fn a_ball_rolls_over_flush_blocks() {
     }
 }
 
-/// Largest tilt in radians of a roly-poly toy in the last 5 of 30 s. It starts at 0.05 rad, on a slab.
+/// Largest tilt in radians of a roly-poly toy during the last 5 s of 30 s. The toy starts on a slab, at a tilt of 0.05
+/// rad.
 fn tilt_after_30_s(slab: BodyDef) -> Fx {
     let mut world = World::new(Config { sleeping: false, ..Config::default() }).expect("valid");
     spawn_blocks(&mut world, 0..1, fx!(10));
@@ -77,9 +78,10 @@ fn tilt_after_30_s(slab: BodyDef) -> Fx {
     largest
 }
 
-/// For a toy of radius `r`, its centre of mass `d` below the middle and the radius of gyration `k`, small oscillations
-/// have `w^2 = g d / (k^2 + (r - d)^2)`, 4.7 / s^2 here. Because contacts act where they are at the start of a tick `T`
-/// with sub-steps `h`, they grow by `exp(w^2 (T - h) t / 4)`: by a factor of 1.56 in 30 s.
+/// A toy of radius `r` has its centre of mass `d` below its middle, and the radius of gyration `k`. The angular
+/// frequency `w` of small oscillations is given by `w^2 = g d / (k^2 + (r - d)^2)`, here 4.7 / s². During a tick `T`
+/// with sub-steps `h`, contacts act where they are at the start of the tick. This makes the oscillations grow by
+/// `exp(w^2 (T - h) t / 4)`, which is a factor of 1.56 in 30 s.
 #[test]
 fn a_roly_poly_toy_swings_on_a_loose_slab_as_on_a_fixed_one() {
     for slab in [BodyDef::fixed(), BodyDef::dynamic()] {

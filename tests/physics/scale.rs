@@ -1,7 +1,7 @@
 //! With `Config::for_smallest`, stacks of boxes of any size are as firm as stacks of boxes of 1 m.
 //!
-//! A contact yields in proportion to `g / omega^2` for each body that it carries. The documentation of `Config` has a
-//! table of settings.
+//! A contact yields by about `g / omega^2` for each body that it carries, whatever the size of the bodies, so smaller
+//! bodies need stiffer contacts. The documentation of `Config` has a table of the settings for each size.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ use lockstep2d::math::{Fx, Rng, Vec2, fx_div, fx_mul};
 use lockstep2d::solver::ContactTuning;
 use lockstep2d::world::{Config, World};
 
-/// A floor below height 0, and boxes of one size.
+/// A floor with its top at height 0, and boxes of one size.
 struct Floor {
     world: World,
     size: Fx,
@@ -49,7 +49,8 @@ impl Floor {
     }
 }
 
-/// Sinking of the top of 8 boxes in 10 s, in units of the size of a box. The gaps at the start are 1 % of a box.
+/// Overlap in a column of 8 boxes after 10 s: distance of the topmost box below its place in a column without overlaps,
+/// in units of the size of a box. At the start, the gaps between the boxes are 1 % of this size.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();
@@ -58,9 +59,9 @@ fn sink(config: Config, size: Fx) -> Fx {
     fx!(7.5) - floor.place(boxes[7]).y
 }
 
-/// Checks a column of 20 boxes with offsets of 1 %, and a pyramid of 10 rows. Small boxes sway more often in the half
-/// second until they sleep. At the end, a column of boxes of 1 cm leans by 0.11 of the size of a box, and a column of
-/// boxes of 1 m by 0.002 of it.
+/// Checks a column of 20 boxes, each moved sideways by up to 1 % of its size, and a pyramid of 10 rows. Small boxes
+/// sway faster, so they sway more often in the half second until they sleep. At the end, a column of boxes of 1 cm
+/// leans by 0.11 of the size of a box, and a column of boxes of 1 m by 0.002 of it.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);

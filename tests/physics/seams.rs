@@ -38,7 +38,7 @@ fn ground(world: &mut World, ground: Ground) {
     }
 }
 
-/// Largest vertical speed, and distance travelled.
+/// Largest vertical speed in m/s, and distance travelled in m, during 20 s.
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);
@@ -65,7 +65,7 @@ fn movers() -> [(&'static str, ShapeDef); 4] {
     ]
 }
 
-/// The sample of 36 of 240 cases has every ground, mover, friction, speed and depth.
+/// A sampled run plays 36 of the 240 cases. Each ground, mover, friction, speed and depth occurs among them.
 #[test]
 fn everything_slides_over_flush_blocks() {
     let mut cases = Vec::new();
@@ -87,7 +87,8 @@ fn everything_slides_over_flush_blocks() {
     });
 }
 
-/// The ghost-collision filter does not remove real collisions: of two thin plates, and of a box with a step of 2 cm.
+/// The ghost-collision filter leaves real collisions alone: that of two thin plates, and that of a box with a step of 2
+/// cm.
 #[test]
 fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();

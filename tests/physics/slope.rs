@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul, widen};
 use lockstep2d::world::World;
 
-/// Distance travelled in `seconds`, and final speed.
+/// Distance in m travelled in `seconds`, and final speed in m/s.
 fn slide(degrees: Fx, friction: Fx, seconds: i64, ground: Ground) -> (Fx, Fx) {
     let angle = Angle::from_degrees(degrees);
     let (sin, cos) = (widen(angle.sin()), widen(angle.cos()));

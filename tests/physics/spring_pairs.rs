@@ -1,4 +1,4 @@
-//! Free bodies with one spring along a line.
+//! Two free bodies that are joined by one spring along a line.
 #![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 

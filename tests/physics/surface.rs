@@ -43,7 +43,7 @@ fn speed(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").velocity().x
 }
 
-/// A disc decelerates by `a = c g / (1 + k^2 / r^2) = 2/3 c g`.
+/// A disc with the coefficient `c` of rolling resistance decelerates by `a = c g / (1 + k^2 / r^2) = 2/3 c g`.
 #[test]
 fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
     for radius in [fx!(0.1), fx!(0.5), fx!(3)] {
@@ -118,7 +118,7 @@ fn resistance_between_two_wheels_is_equal_and_opposite() {
     assert!((after[0].1 - after[1].1).abs() < (before[0].1 - before[1].1).abs(), "{before:?} {after:?}");
 }
 
-/// The box has `v = mu g t` until it reaches the speed of the belt.
+/// The velocity of the box is `v = mu g t` until it reaches the speed of the belt.
 #[test]
 fn a_box_on_a_belt_reaches_its_speed() {
     for ground in [line(), block()] {
@@ -136,7 +136,7 @@ fn a_box_on_a_belt_reaches_its_speed() {
     }
 }
 
-/// The slope is below the angle of friction.
+/// The angle of the slope is below the angle of friction, so the box does not slide back.
 #[test]
 fn a_belt_carries_uphill() {
     let angle = Angle::from_degrees(fx!(20));

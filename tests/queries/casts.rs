@@ -20,7 +20,7 @@ fn shapes() -> [Geometry; 4] {
     [pill, round.expect("valid").into(), square.into(), Geometry::circle(fx!(0.5)).expect("valid")]
 }
 
-/// A sloping floor of 40 tiles or links of 0.5 m about the origin.
+/// A sloping floor of 40 tiles or links of 0.5 m, with its middle at the origin.
 fn floor(tiles: bool, slope: Angle, world: &mut World) {
     let turn = Rot::from_angle(slope);
     if tiles {
@@ -72,7 +72,7 @@ fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     assert!(ledges > 1000);
 }
 
-/// The shape is between a floor and a ceiling that touch it. The cast stops at a ledge of 2 mm.
+/// The shape is between a floor and a ceiling that it touches. The cast stops at a ledge of 2 mm.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     let mut rng = Rng::new(2);
@@ -179,7 +179,7 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
         let hit = cast(way, report).expect("the near wall");
         assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
         assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
-        // The cast would go deeper into the near wall.
+        // This cast goes deeper into the near wall, so it stops at once.
         let hit = cast(-way, resist).expect("the near wall");
         assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
         assert_eq!(cast(-way, ignore), None);
@@ -327,8 +327,8 @@ fn a_cast_from_within_a_shape_starts_inside_with_and_without_a_turn() {
     }
 }
 
-/// A one-sided chain forms a roof with a vertical or sloping lip at one end. The roof is open from below, also for
-/// queries that start on the right of the line through the lip.
+/// A one-sided chain forms a roof with a vertical lip at one end. Queries from below pass through the roof, even if
+/// they start on the solid side of the line through the lip.
 #[test]
 fn queries_from_below_a_convex_corner_pass_through_the_roof() {
     for points in [

@@ -146,7 +146,7 @@ impl Churn {
     }
 }
 
-/// A point of a hilly line from right to left.
+/// Point `i` of a hilly line that runs from right to left. The points are 2 m apart along x.
 fn across(i: usize, height: Fx) -> Vec2<Fx> {
     Vec2::new(fx!(11) - Fx::from_num(i) * 2, height)
 }

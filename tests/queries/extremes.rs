@@ -97,7 +97,7 @@ fn boxes_that_are_no_boxes_hold_nothing() {
 #[test]
 fn a_ray_across_the_world_tells_neighbours_apart() {
     let mut world = World::default();
-    // The fraction of a ray of 2^31 m has a resolution of half a metre.
+    // The fraction of a ray of 2^31 m has a resolution of half a metre, which does not tell the balls apart.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.01)).expect("valid"));
     for x in [fx!(1000.06), fx!(1000.03), fx!(1000)] {
         world.spawn(&BodyDef::fixed().position((x, fx!(0))), &[ball]).expect("valid");

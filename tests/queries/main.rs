@@ -203,7 +203,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let hit = all.iter().find(|hit| hit.shape == solid.id);
     tally.rays += 1;
     let Some(hit) = hit else {
-        // The oracle reports a hit for a near miss, too.
+        // The oracle may report a hit for a near miss.
         let Some(reached) = traced else { return };
         for i in 0..=64 {
             let point = along(origin, translation, (reached + fx!(0.00001) * i).min(translation.length()));
@@ -214,7 +214,8 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let surface = solid.distance(hit.point);
     assert!(surface < TOLERANCE, "{surface} {hit:?}");
     let Some(way) = traced else { panic!("{hit:?} is not on the ray") };
-    // The oracle stops slightly above the surface. Along a ray almost parallel to it, the stop is farther from the hit.
+    // The oracle stops slightly above the surface. If the ray is almost parallel to the surface, this stop is far from
+    // the hit.
     let steep = -translation.normalized().unwrap_or(Vec2::X).widen().dot(hit.normal.widen());
     let apart = (way - fx_mul(hit.fraction, translation.length())).abs();
     if hit.fraction > 0 && steep > fx!(0.05) {

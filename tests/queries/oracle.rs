@@ -1,11 +1,11 @@
-//! Shapes as corners in world coordinates and a radius.
+//! Oracle of queries: brute force over shapes, each given as corners in world coordinates and a radius.
 
 use lockstep2d::body::{Geometry, ShapeId, Sides};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2, closest_point_on_segment, point_in_polygon};
 use lockstep2d::world::{QueryFilter, World};
 
-/// Error of rounded corner coordinates in metres.
+/// Tolerance in metres for the rounding of corner coordinates.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
 pub(crate) struct Solid {

@@ -47,7 +47,7 @@ impl Outline {
         (if self.holds(point) { -nearest } else { nearest }) - self.radius
     }
 
-    /// Distance in metres. `None` if the polygons overlap.
+    /// Distance of the outlines in metres. `None` if the polygons without their radii overlap.
     fn distance(&self, other: &Outline) -> Option<Fx> {
         if self.holds(other.corners[0]) || other.holds(self.corners[0]) {
             return None;
@@ -96,7 +96,7 @@ fn origin(case: u32) -> Vec2<Fx> {
     if case.is_multiple_of(2) { Vec2::ZERO } else { Vec2::new(fx!(1000000000), fx!(-999999999.125)) }
 }
 
-/// Error of rotated corner coordinates in metres.
+/// Tolerance in metres for the rounding of rotated corner coordinates.
 const TOLERANCE: Fx = fx!(0.000002);
 
 #[test]
@@ -134,7 +134,8 @@ fn distances_overlaps_and_manifolds_are_those_of_brute_force() {
             (_, None) => assert!(lines || expected.is_some_and(|gap| gap > fx!(0.04999)), "{expected:?}"),
             (Some(gap), Some(deepest)) => {
                 touching += 1;
-                // Nearly parallel edges count as faces, with an error of up to half a millimetre.
+                // Nearly parallel edges touch as faces do. The separation then differs from the distance by up to half
+                // a millimetre.
                 assert!((gap - deepest).abs() < fx!(0.000502) || gap < fx!(0.0005), "{gap} {deepest}");
             }
             (None, Some(deepest)) => assert!(deepest < fx!(0.0006), "{deepest}"),

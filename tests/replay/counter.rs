@@ -1,4 +1,4 @@
-//! Two players add to a sum.
+//! A game in which two players add to a sum.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Setup {
-    /// At most 1000.
+    /// Larger values than 1000 are refused.
     pub(crate) start: i32,
     /// Ignored by the rules.
     pub(crate) label: String,
@@ -17,7 +17,7 @@ pub(crate) struct Input {
     pub(crate) add: i8,
     /// Ignored by the rules.
     pub(crate) wink: bool,
-    /// 0 in every decoded input.
+    /// Not encoded, so it is 0 in every decoded input.
     #[serde(skip)]
     pub(crate) mood: u8,
 }
@@ -72,7 +72,7 @@ impl Game for Counter {
         *self = save.clone();
     }
 
-    /// A tick costs one unit, plus the magnitudes of the added numbers.
+    /// A tick costs one unit of work, plus the magnitudes of the added numbers.
     fn work(&self, inputs: &[Input]) -> u64 {
         1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
     }
@@ -82,7 +82,7 @@ impl Game for Counter {
     }
 }
 
-/// Delegates to the counter in the field `$counter`.
+/// Methods of [`Game`] that call those of the counter in the field `$counter`.
 macro_rules! like_its_counter {
     ($counter:tt) => {
         fn players(&self) -> u32 {

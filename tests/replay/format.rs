@@ -7,7 +7,7 @@ use lockstep2d::replay::{Flaw, Limits, Recording, Step, Verdict, VerifiedReplay}
 use crate::counter::{Counter, add, inputs_at, setup};
 use crate::{record, verdict};
 
-/// Hash of a game that is simulated without a replay.
+/// State hash of the game after `ticks` ticks, simulated without a replay.
 fn hash_after(ticks: u64) -> StateHash {
     let mut game = Counter::new(&setup()).unwrap();
     for tick in 0..ticks {
@@ -118,7 +118,7 @@ fn the_bytes_are_those_of_the_document() {
     assert!(verdict(&documented).is_match());
 }
 
-/// The digits before each `|` of the document's `hex` block.
+/// Bytes of the example in the document's `hex` block: the hexadecimal digits before the `|` of each line.
 fn example_of(document: &str) -> Vec<u8> {
     let (_, rest) = document.split_once("```hex\n").expect("an example in the document");
     let (block, _) = rest.split_once("```").expect("an end of the example");

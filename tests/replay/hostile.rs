@@ -10,7 +10,7 @@ use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
 use crate::{record, verdict};
 
-/// A replay of three full blocks of ten ticks, a block of five, and the trailer.
+/// A replay with three full blocks of ten ticks, a block of five ticks, and the trailer.
 fn original() -> Vec<u8> {
     record(35, 10, inputs_at)
 }
@@ -62,7 +62,7 @@ fn no_flipped_bit_matches_even_with_checksums_repaired() {
 
 #[test]
 fn an_input_that_the_game_ignores_is_bound_all_the_same() {
-    // The flipped bit is the wink of the first player. Layout: ticks, length, add, wink, add, wink.
+    // The flipped bit is the wink of the first player. Layout of a run: ticks, length, add, wink, add, wink.
     let verdict = forged(|forged| forged.payload(0)[3] ^= 1);
     assert_eq!(verdict, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
 }
@@ -137,7 +137,7 @@ fn the_end_cannot_be_restated() {
         hash: actual,
         difference: ClaimDifference::Value { name: name.into(), claimed, actual: actual_value },
     };
-    // Layout: count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
+    // Layout of the claims: count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
     let count = CHAIN.end;
     let (half, sum) = (count + 1, count + 1 + 13);
     assert_eq!(forged(|forged| forged.trailer()[sum + 4] ^= 64), value("sum", Some(40 ^ 64), Some(40)));

@@ -190,7 +190,7 @@ fn what_is_no_file_of_keyframes_is_refused() {
     }
 }
 
-/// A forged keyframe does not fit the replay's checkpoints.
+/// The forged keyframe is well-formed, but its state is not that of the replay's checkpoint at tick 20.
 #[test]
 fn a_keyframe_with_another_state_is_found_when_it_is_used() {
     let file = record(35, 10, inputs_at);

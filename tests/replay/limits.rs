@@ -1,4 +1,5 @@
-//! Each limit holds exactly, and memory use follows the size of the file.
+//! A replay may reach each limit, but not exceed it by one. Memory use depends on the size of the file, and not on its
+//! length fields.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -73,7 +74,7 @@ fn limits_come_before_the_rest_of_the_file() {
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 
-/// Counts the bytes that this thread has allocated, and their peak.
+/// An allocator that counts the bytes that this thread holds, and their peak.
 struct Counting;
 
 thread_local! {
@@ -102,7 +103,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Largest number of bytes that `work` holds.
+/// Largest number of bytes that `work` holds at a time.
 fn most_held(work: impl FnOnce()) -> usize {
     let before = HELD.get();
     MOST.set(before);
@@ -121,7 +122,7 @@ fn memory_follows_the_file_and_not_its_length_fields() {
         let took = most_held(|| drop(verdict(damaged, &Limits::default())));
         assert!(took < bound, "{took} bytes for {what}");
     };
-    // Writes a huge number at every place, without and with repaired checksums.
+    // Writes a huge number at every byte offset, without and with repaired checksums.
     for high in [0x7f, 0x3f, 0x00] {
         let huge = [0xff, 0xff, 0xff, high];
         for at in 0..file.len() - 4 {

@@ -1,4 +1,4 @@
-//! Positions and offsets of errors are right. Limits of header fields are exact.
+//! A [`Reader`] reports its offset and the offsets of errors, and keeps the limits of header fields exactly.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::SetupError;
@@ -19,7 +19,7 @@ fn it_knows_how_far_it_has_read() {
         assert_eq!(reader.ticks(), ticks);
         offsets.push(reader.offset());
     }
-    // A block begins with the length of its payload, four bytes.
+    // The first four bytes of a block are the length of its payload.
     for pair in offsets.windows(2) {
         let start = usize::try_from(pair[0]).unwrap();
         let length = u32::from_le_bytes(file[start..start + 4].try_into().unwrap());
@@ -84,7 +84,7 @@ fn a_chain_hash_that_is_wrong_is_named_where_it_stands() {
     let mut forged = Forged::take_apart(&file);
     let ticks = forged.trailer()[..8].to_vec();
     assert_eq!(file[payload..payload + 8], ticks, "expected the trailer here");
-    // The block's checksum covers the chain hash.
+    // The block's checksum covers the chain hash, so the checksum is repaired.
     file[payload + CHAIN.start] ^= 1;
     let start = payload - 5;
     let end = file.len() - 8;

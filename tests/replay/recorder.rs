@@ -89,7 +89,8 @@ fn what_cannot_start_is_refused() {
     assert_eq!(refused(&long, 10), RecordError::SetupLength { bytes: (17 << 20) + 12 });
 }
 
-/// A game with text as input, so that a block can grow, and with claims from the setup.
+/// A game whose inputs are texts of any length, so that a block can exceed the maximum length, and whose setup is the
+/// list of its claims.
 struct Scribe {
     claims: Vec<(String, i64)>,
 }

@@ -114,14 +114,14 @@ fn many_bodies_in_one_command_are_work() {
         let body = BodyDef { settings: BodySettings::default(), ..BodyDef::fixed() };
         recording.step(&[vec![Command::SpawnEach { body, shapes: vec![ball()], poses }]]).unwrap();
         let file = recording.finish().unwrap();
-        // A body costs at least a unit.
+        // Each body costs at least one unit of work.
         let limits = Limits { tick_work: 20_000, ..Limits::default() };
         let verdict = verify::<Sandbox>(&file, &limits);
         assert_eq!(verdict.name(), expected, "{verdict}");
     }
 }
 
-/// A crowded tick costs far more work if the bodies overlap.
+/// A tick with many bodies costs far more work if they overlap.
 #[test]
 fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {

@@ -1,5 +1,5 @@
-//! A seek leads to the state that a playback without seeks has at the same tick. In a part that has been played, a seek
-//! simulates at most two intervals, within a memory budget.
+//! After a seek, the state is the one that a playback without seeks reaches at the same tick. A seek within the part
+//! that has been played simulates at most two intervals between keyframes, even if the memory budget is small.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::codec;
@@ -22,7 +22,7 @@ pub(crate) fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> 
     Timeline::open(file, &options, &Limits::default()).unwrap()
 }
 
-/// State hashes of a playback without seeks.
+/// State hashes of a playback without seeks: one at the start and one after each tick.
 pub(crate) fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
     let mut replay = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
     let mut hashes = vec![replay.game().state_hash()];
@@ -55,8 +55,8 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // The cases have room for all keyframes, room for about a hundred, and intervals that are not multiples of the
-    // block length.
+    // The first case has memory for all keyframes, and the second for about a hundred. In the last two cases, the
+    // interval is not a multiple of the block length of 60 ticks.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
         assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");
@@ -129,7 +129,7 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // There is room for about 100 keyframes, and for 30 saves for stepping backwards.
+    // There is memory for about 100 keyframes, and for 30 saves for stepping backwards.
     let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
@@ -196,7 +196,8 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // One tick costs 102 units, and each of the other ticks costs three. Repeated ticks must not count again.
+    // One of the 99 ticks costs 102 units of work, and each of the others costs 3. Ticks that are simulated again must
+    // not count again.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {
@@ -205,7 +206,8 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     }
 }
 
-/// A replay of balls that fall for 41 ticks. They touch the floor in tick 42, whose step counts these contacts.
+/// A replay of balls that fall for 41 ticks and touch the floor in tick 42. The work of that tick includes their
+/// contacts.
 fn falling_balls() -> Vec<u8> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let floor = Polygon::rectangle(fx!(20), fx!(1)).unwrap();
@@ -221,7 +223,7 @@ fn falling_balls() -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// State hashes, and work of each tick.
+/// State hashes at the start and after each tick, and the work of each tick.
 pub(crate) fn hashes_and_works(file: &[u8]) -> (Vec<StateHash>, Vec<u64>) {
     let mut replay = RawReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
     let (mut hashes, mut works) = (vec![replay.game().state_hash()], vec![]);
@@ -234,7 +236,7 @@ pub(crate) fn hashes_and_works(file: &[u8]) -> (Vec<StateHash>, Vec<u64>) {
     (hashes, works)
 }
 
-/// The world counts its work during the step, so the step that exceeds the limit has begun.
+/// The world counts its work during the step, so a step has already begun when it exceeds the limit.
 #[test]
 fn a_world_that_exceeds_a_limit_stays_at_the_last_tick() {
     let file = falling_balls();
@@ -302,7 +304,7 @@ fn a_game_that_does_not_save_all_of_itself_is_found_out() {
     let mut timeline = open::<Forgetful>(&file, 20, 1 << 20);
     timeline.seek(100).unwrap();
     assert_eq!(timeline.seek(55), Err(SeekError::Forgetful { tick: 50 }));
-    // If the timeline reaches tick 50 afterwards, it shows the right state.
+    // A later seek to tick 50 may fail. If it succeeds, the timeline shows the right state.
     if timeline.seek(50).is_ok() {
         assert_eq!(timeline.game().state_hash(), hashes::<Forgetful>(&file)[50]);
     }

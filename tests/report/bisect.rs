@@ -26,7 +26,7 @@ thread_local! {
     static FROZEN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// A yard that counts its steps and loads.
+/// A yard that counts its steps and loads. With `FAULTY`, it also applies the flip in `FLIP`.
 struct Faulty<const FAULTY: bool>(Yard);
 
 impl<const FAULTY: bool> Faulty<FAULTY> {
@@ -100,7 +100,7 @@ fn inputs(tick: u64) -> Vec<u8> {
     (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
 }
 
-/// A random flip that changes the state, and the path of its body.
+/// Returns a random flip that changes the state, and the path of the flipped body.
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
@@ -169,7 +169,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(found.stage, Some(stage), "{what}");
         assert_eq!(culprit(&found), (path.clone(), flip.field.name().into()), "{what}");
     });
-    // The flips covered every field, before and after the step.
+    // The flips covered every field, and both points in time (before and after the step).
     let drawn = drawn.into_inner().unwrap();
     assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();
@@ -217,13 +217,13 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
         assert!(STEPS.get() < 3 * TICKS);
         assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-        // The comparison cannot try all bits, and may blame no body.
+        // The comparison cannot try all bits, so it may blame no body. It must not blame the wrong one.
         let told = found.explanation.map(|told| told.path);
         assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }
 }
 
-/// A report of ten ticks whose last hash is not that of its save.
+/// A report of ten ticks. The hash of the last tick is given by `hash`, and is not that of the saved state.
 fn misstated(hash: impl FnOnce(&mut Sound) -> StateHash) -> Evidence {
     let (mut recorder, mut game) = Recorder::<Sound>::start(&3, 60).unwrap();
     let mut history = History::<Sound>::of_ticks(20);
@@ -251,8 +251,8 @@ fn a_hash_that_is_not_of_its_save_may_be_explained() {
     assert_eq!(found.explanation.map(|told| (told.path, told.bit)), path.map(|path| (path, 0)));
 }
 
-/// The world refuses to flip bits of bodies that do not move. So an untrusted report with many of these bodies causes
-/// no work.
+/// The world refuses to flip bits of bodies that are disabled, asleep or not dynamic. Therefore an untrusted report
+/// with many such bodies causes no work.
 #[test]
 fn bodies_that_do_not_move_are_not_searched() {
     FROZEN.set(true);
@@ -272,7 +272,7 @@ fn the_loads_of_a_search_are_limited() {
     LOADS.set(0);
     let found = bisect::<Sound>(&report, None, &Limits::default()).unwrap();
     assert_eq!((found.first_different, found.explanation), (Some(10), None));
-    // A load is charged as half a tick, and the search may take as long as 15 ticks.
+    // The search may cost as much as 15 ticks, and a load is charged as half a tick. This allows about 30 loads.
     assert!(LOADS.get() <= 32, "loaded {} states", LOADS.get());
 }
 

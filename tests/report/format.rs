@@ -116,7 +116,7 @@ fn what_no_peer_writes_is_refused() {
     }
 }
 
-/// For any damage with a valid hash, a comparison ends with a result or an error.
+/// The report is damaged and its hash is repaired. A comparison with it ends with a result or an error.
 #[test]
 fn hostile_reports_are_no_danger() {
     let mut peer = Peer::new(1, None);

@@ -22,7 +22,7 @@ struct Rules {
     players: u32,
     /// The tick in which the first ball is kicked.
     kick: u64,
-    /// Work units that the setup counts.
+    /// Work units that the creation of the game reports.
     work: u64,
 }
 
@@ -126,8 +126,8 @@ fn search(rules: Rules, inputs_at: impl Fn(u64) -> [u16; 2]) -> (u64, u64) {
     (LOADS.get(), raw.work() - rules.work)
 }
 
-/// The search may take as long as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to
-/// three times as much as others, because it searches all pairs again.
+/// The search may cost as much as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to
+/// three times as much as other ticks, because the broad phase searches all pairs again.
 #[test]
 fn work_within_a_step_is_charged_to_the_search() {
     let (loads, work) = search(PLAIN, |_| [0, 0]);

@@ -113,12 +113,12 @@ pub(crate) enum When {
     After,
 }
 
-/// A bit that flips whenever its tick is simulated.
+/// A bit flip that happens whenever its tick is simulated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flip {
     pub(crate) tick: u64,
     pub(crate) when: When,
-    /// Number of the body among the dynamic bodies.
+    /// Index of the body among the dynamic bodies.
     pub(crate) body: usize,
     pub(crate) field: BodyField,
     pub(crate) bit: u32,
@@ -180,7 +180,8 @@ impl Peer {
         (0..u64::from(PLAYERS)).map(|player| inputs_at(self.tick, player)).collect()
     }
 
-    /// Simulates and records a tick. Every seventh tick first predicts four ticks and rolls back.
+    /// Simulates and records a tick. Before every seventh tick, it simulates four ticks with predicted inputs and rolls
+    /// them back.
     pub(crate) fn advance(&mut self) {
         let start = self.tick;
         if start % 7 == 3 {

@@ -47,7 +47,7 @@ enum Platform {
     Train,
     /// A wheel that turns to and fro below the character.
     Wheel,
-    /// A belt that moves like a lift.
+    /// A conveyor belt that moves like a lift.
     Belt,
 }
 
@@ -62,7 +62,7 @@ struct Ride {
     velocity: Vec2<Fx>,
     /// Half-axes of the ellipse in metres.
     size: Vec2<Fx>,
-    /// Turns per second along the ellipse, or swings per second.
+    /// Turns per second along the ellipse, or swings per second of a turning platform or wheel.
     turns: Fx,
 }
 

@@ -7,8 +7,8 @@ use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
 
 use super::{RATES, at, fall, shapes, world};
 
-/// A character that walks against something within its own height stays on the floor. If the floor under the overhang
-/// counted as a step, the character would hop by `v / tick_rate` for ever.
+/// A character that walks against an obstacle which hangs lower than the character's head stays on the floor. If the
+/// floor under the overhang counted as a step, the character would hop by `v / tick_rate` for ever.
 #[test]
 fn a_character_does_not_climb_what_hangs_over_its_floor() {
     let undersides = [fx!(0.05), fx!(0.35), fx!(0.5), fx!(0.9), fx!(1.2)];
@@ -33,7 +33,7 @@ fn a_character_does_not_climb_what_hangs_over_its_floor() {
     }
 }
 
-/// A step below a ceiling without room for the character is a wall.
+/// A step is like a wall if the character does not fit between the step and the ceiling.
 #[test]
 fn a_character_does_not_climb_a_step_without_headroom() {
     for ((name, shape), tick_rate) in shapes().into_iter().flat_map(|shape| RATES.map(|rate| (shape, rate))) {

@@ -1,4 +1,4 @@
-//! Box2D's group "Bodies".
+//! Samples of Box2D's group "Bodies".
 
 use lockstep2d::body::{BodyDef, BodyKind, MassSource};
 use lockstep2d::fx;
@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Sample "Pivot". At first, the lower end is at rest.
+/// Sample "Pivot". At first, the lower end of the bar is at rest.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();
@@ -143,7 +143,8 @@ fn a_bar_starts_to_turn_about_its_lower_end() {
     assert!(body.velocity_at(Vec2::ZERO).length() < fx!(0.00001), "{:?}", body.velocity_at(Vec2::ZERO));
     for tick in 1..=30 {
         stage.world.step();
-        // The lower end of a free body is at x = v t - l sin(w t), y = l - l cos(w t).
+        // With half the length `l` of the bar, the lower end of a free bar is at x = v t - l sin(w t), y = l - l cos(w
+        // t).
         let turn = Angle::from_radians(fx_mul(spin, num(tick) / 60));
         let x = num(tick) / 12 + widen(turn.sin()) * 3;
         let expected = Vec2::new(x, fx!(3) - widen(turn.cos()) * 3);

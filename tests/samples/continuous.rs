@@ -1,4 +1,4 @@
-//! Box2D's group "Continuous".
+//! Samples of Box2D's group "Continuous".
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::Config;
 
 use super::{Stage, ball, capsule, degrees, hull, line, near, num, pill, rect, rounded, square};
 
-/// Walls of a room of 20 m about the origin.
+/// Four walls of a room of 20 m by 20 m, with its middle at the origin.
 fn room(change: impl Fn(ShapeDef) -> ShapeDef) -> [ShapeDef; 4] {
     let (a, b, c, d) = (at!(-10, -10), at!(10, -10), at!(10, 10), at!(-10, 10));
     [line(a, b), line(b, c), line(c, d), line(d, a)].map(change)
@@ -229,7 +229,8 @@ fn thin_tiles_stop_what_drops_on_them() {
     }
 }
 
-/// Sample "Safety Factor". Contacts are made before the shapes meet, so that slow bodies need no sweep.
+/// Sample "Safety Factor". Contacts are created before the shapes touch, so slow bodies need no continuous collision
+/// detection.
 #[test]
 fn a_dropped_box_does_not_sink_in() {
     for height in (1..=80).map(|step| num(step) / 40) {
@@ -241,7 +242,8 @@ fn a_dropped_box_does_not_sink_in() {
             stage.spawn(BodyDef::dynamic().position(place).angle(tilt), &[square(fx!(0.5))]);
             stage.run_and(90, |stage| {
                 let overlap = stage.world.deepest_overlap();
-                // The bound is Box2D's slop of 5 mm plus 1 mm. Contacts of the default settings have no slop.
+                // The bound is the slop of Box2D, 5 mm, plus 1 mm. With default settings, contacts of this engine have
+                // no slop.
                 assert!(overlap < fx!(0.006), "{overlap} m after {height} m");
             });
         }

@@ -1,4 +1,4 @@
-//! Box2D's group "Events". The sample "Joint" of this group is in `joints.rs`.
+//! Samples of Box2D's group "Events". The sample "Joint" of this group is in `joints.rs`.
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, Filter, MassSource, ShapeDef};
 use lockstep2d::fx;
@@ -62,7 +62,8 @@ fn a_funnel_empties_into_its_sensor() {
     assert_eq!(stage.world.body_count(), 4);
 }
 
-/// Sample "Sensor Bookend". A visit ends when the sensor or the visitor leaves, is disabled or is removed.
+/// Sample "Sensor Bookend". The overlap of a sensor and a visitor ends when one of them leaves, is disabled or is
+/// removed.
 #[test]
 fn every_begin_has_its_end() {
     for ending in 0..5 {
@@ -89,7 +90,7 @@ fn every_begin_has_its_end() {
                     }
                 }
             }
-            // Two sensors that overlap report each other: both have an open overlap with the other one, or neither has.
+            // Two overlapping sensors report each other, so either both events are open or neither is.
             let mutual = open.iter().filter(|(sensor, visitor)| {
                 let is_sensor = |id| stage.world.shape(id).is_some_and(|shape| shape.is_sensor());
                 is_sensor(*sensor) && is_sensor(*visitor)
@@ -128,7 +129,7 @@ fn a_foot_sensor_knows_the_ground() {
     let player = stage.spawn(BodyDef::dynamic().position(at!(0.5, 1)).lock_rotation(), &[body, sole]);
     let sole = *stage.world.shapes_of(player).last().expect("two shapes");
     stage.run(60);
-    // The sole is 1 m wide. It reaches half a metre to each side of the middle of a link.
+    // The sole is centred on a link, and both are 1 m wide. So the sole overlaps this link, and perhaps its neighbours.
     let under = stage.world.sensor_overlaps(sole).len();
     assert!((1..=3).contains(&under), "{under} links");
     stage.world.set_velocity(player, at!(0, 5), fx!(0)).expect("valid");
@@ -341,8 +342,8 @@ fn a_projectile_explodes_on_impact() {
         break;
     }
     let (centre, _) = at.expect("a hit");
-    // The projectile hits after a quarter of a tick, and pushes the box ahead for the rest of the tick: by 0.75 / 60 s
-    // x 60 m/s x 0.2 / 1.2.
+    // The projectile hits after a quarter of a tick. For the rest of the tick, it pushes the box ahead by 0.75 / 60 s x
+    // 60 m/s x 0.2 / 1.2 = 0.125 m, where 0.2 / 1.2 is the projectile's share of the mass.
     assert!(centre.x > fx!(7.2) && centre.x < fx!(7.25) + fx!(0.125), "exploded at {centre:?}");
     assert!(stage.world.body(shot).is_none());
     stage.run(180);

@@ -1,4 +1,4 @@
-//! Box2D's group "Joints". `machines.rs` has things that are built with joints.
+//! Samples of Box2D's group "Joints", without the machines, which are in `machines.rs`.
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;
@@ -64,7 +64,7 @@ fn a_distance_joint_is_a_spring_with_limits() {
         fx!(0.005),
     );
     near(hang(Distance::new().limit(fx!(0.5), fx!(2)), 300), fx!(2), fx!(0.005));
-    // The ball weighs 39.3 N. A spring that only pushes does not hold it: h = g t^2 / 2.
+    // The ball weighs 39.3 N. A spring that only pushes does not hold the ball, which falls by h = g t^2 / 2.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
     // This spring pulls with at most half the weight. It reaches this force when stretched by half its sag, after a
@@ -96,7 +96,7 @@ fn a_motor_joint_follows_its_target() {
         // The target accelerates by at most 24 m/s² along x and 4 m/s² along y. With gravity this is sqrt(24^2 + 14^2)
         // = 28 m/s².
         let bound = sag(fx!(28), fx!(4)) * 2;
-        // In the first second the bound does not hold, because the target starts with 12 m/s at once.
+        // The bound does not hold in the first second, because the velocity of the target jumps to 12 m/s at the start.
         assert!(
             tick < 60 || stage.place(body).distance(place) < bound,
             "tick {tick}: {:?} of {place:?}",
@@ -269,8 +269,9 @@ fn locks_and_joints_agree() {
     }
 }
 
-/// Samples "Breakable" and, of the group "Events", "Joint". A box weighs 40 N. When it swings on a hinge, the load at
-/// the lowest point is `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N`.
+/// Samples "Breakable" and, of the group "Events", "Joint". A box weighs 40 N. If it swings on a hinge at the distance
+/// `r` from its centre, the load at the lowest point is `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N`, with the radius of
+/// gyration `k`.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -322,7 +323,7 @@ fn a_constraint_of_ones_own_holds_a_box() {
     let body = stage.spawn(def, &[rect(fx!(1), fx!(0.5)).density(fx!(20))]);
     let (hook, corners) = (at!(3, 0), [at!(1, -0.5), at!(1, 0.5)]);
     let rope = |stage: &Stage, corner: Vec2<Fx>| hook.distance(stage.body(body).transform().apply(corner));
-    // The rope is a spring of 3 Hz for half of the 40 kg, damped with 0.7, that only pulls.
+    // Each rope is a spring that only pulls, with 3 Hz for half of the 40 kg and a damping ratio of 0.7.
     let stiffness = fx!(20) * 355;
     let damping = fx!(20) * 26;
     for _ in 0..3600 {
@@ -348,8 +349,8 @@ fn a_constraint_of_ones_own_holds_a_box() {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");
         let tension = fx_div(fx_mul(fx!(200), length), lean).expect("positive");
-        // A part of the tension is damping: when the impulses are computed, between two ticks, the box falls at `1.5 g
-        // h`, where `h` is a sub-step.
+        // A part of the tension is damping. The impulses are computed between two ticks, when the box falls at
+        // `1.5 g h`, where `h` is a sub-step.
         let damped = fx_div(fx_mul(damping, lean), length * 16).expect("positive");
         near(length, fx!(1) + fx_div(tension - damped, stiffness).expect("positive"), fx!(0.001));
     }

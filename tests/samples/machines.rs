@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": machines that are built with joints.
+//! Samples of Box2D's group "Joints": machines that are built with joints.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, JointId, ShapeDef};
 use lockstep2d::fx;
@@ -69,7 +69,7 @@ fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     before
 }
 
-/// Sample "Cantilever". The cantilever of the sample falls and swings, without a gain of energy.
+/// Sample "Cantilever". With the settings of the sample, the cantilever falls and swings, and gains no energy.
 #[test]
 fn a_stiffer_cantilever_bends_less() {
     let tip = |hertz: Fx| {
@@ -204,15 +204,15 @@ fn doohickeys_hold_together() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Sample "Scissor Lift". The platform moves seven times as fast as the strut. With one iteration, the links would give
-/// way by up to 0.23 m.
+/// Sample "Scissor Lift". At first, the platform rises eight times as fast as the strut grows. With one iteration, the
+/// beams would give way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
     let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };
     let mut stage = Stage::of(Config { solver, ..Config::default() });
     let ground = stage.floor();
     let stiff = |def: JointDef| def.softness(fx!(120), fx!(5));
-    // At the angle `a` of the beams, a stage is `5 sin a` high; `sin a` is 0.15 at first.
+    // Beams at the angle `a` to the ground make a stage `5 sin a` high. At first, `sin a` is 0.15.
     let (sine, cosine) = (fx!(0.15), fx!(0.98868599));
     let (mut feet, mut anchors) = ([ground, ground], [at!(-2.5, 1.2), at!(2.5, 1.2)]);
     let mut strutted = ground;
@@ -226,7 +226,7 @@ fn a_scissor_lift_rises_level() {
         if i == 1 {
             strutted = falling;
         }
-        // The lowest beams may lie on the ground.
+        // The lowest beams collide with the ground, although joints connect them to it.
         let on_ground = |def: JointDef| if i == 0 { def.colliding() } else { def };
         let foot =
             JointDef::new(feet[0], rising, Revolute::new()).anchor_a(anchors[0]).anchor_b(at!(-2.5, 0));
@@ -258,7 +258,7 @@ fn a_scissor_lift_rises_level() {
     near(stage.world.joint_length(strut).expect("there"), fx!(4.1459), fx!(0.1));
 }
 
-/// A disc with 16 teeth.
+/// A disc of radius 1 m with 16 teeth, whose centres are `along` metres outside of its edge.
 fn toothed(along: Fx) -> Vec<ShapeDef> {
     let tooth = |i: i32| {
         let angle = Angle::from_turns(num(i) / 16);

@@ -1,4 +1,4 @@
-//! Box2D's groups "Collision" and "Character", and its benchmarks of queries.
+//! Samples of Box2D's groups "Collision" and "Character", and its benchmarks of queries.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, JointId, Polygon, ShapeId};
 use lockstep2d::fx;
@@ -133,7 +133,7 @@ fn manifolds_of_loose_shapes() {
     let segment = probe(Geometry::segment(at!(-0.5, 0), at!(0.5, 0)).expect("valid"), at!(0, 0));
     let rounded = Polygon::square(fx!(0.4)).and_then(|core| core.rounded(fx!(0.1))).expect("valid");
     let wedge = Polygon::new(&[at!(-0.1, -0.5), at!(0.1, -0.5), at!(0, 0.5)]).expect("valid");
-    // In each case, B lies on A.
+    // Name, shape A, shape B and number of contact points. In each case, B lies on A.
     let cases = [
         ("ball, ball", disc(fx!(0.5), at!(0, 0)), disc(fx!(0.5), at!(0, 1)), 1),
         ("capsule, ball", pill(at!(0, 0)), disc(fx!(0.5), at!(0, 0.75)), 1),

@@ -107,8 +107,8 @@ fn damping_is_exponential() {
         let body =
             stage.spawn(def.linear_damping(num(i + 1)).angular_damping(num(10 - i)), &[square(fx!(0.2))]);
         stage.run(30);
-        // Each sub-step divides the velocity by 1 + c / 240, which leaves a share of about c^2 t / 480 more than the
-        // exponential decay.
+        // Each sub-step divides the velocity by 1 + c / 240. After a time t, the velocity is therefore larger than
+        // `v0 exp(-c t)` by a share of about c^2 t / 480.
         near(stage.velocity(body).length(), slow * 10, fx!(0.04));
         near(stage.body(body).angular_velocity(), spin * 100, fx!(0.4));
     }

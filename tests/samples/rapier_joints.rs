@@ -122,7 +122,7 @@ fn pendulums_of_bars_gain_no_energy() {
             before = bar;
         }
         let start = stage.energy();
-        // The tolerance is a hundredth of the energy between the level and the hanging pose.
+        // The tolerance is a hundredth of the difference in energy between the level and the hanging pose.
         let allowed = fx!(0.1) * i64::from(bars * bars);
         stage.run_and(600, |stage| assert!(stage.energy() < start + allowed, "{bars}: {} J", stage.energy()));
         assert!(stage.world.widest_joint_gap() < fx!(0.01));

@@ -1,4 +1,4 @@
-//! Box2D's groups "Robustness" and "Issues".
+//! Samples of Box2D's groups "Robustness" and "Issues".
 
 use lockstep2d::body::{BodyDef, BodyKind, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,7 +8,8 @@ use lockstep2d::world::Config;
 
 use super::{Stage, ball, capsule, hull, line, near, num, rect, square};
 
-/// A pyramid of boxes. The topmost box has the density `top` and is returned.
+/// Adds a pyramid of boxes with density 1, except for the topmost box, which has the density `top`. Returns the topmost
+/// box.
 fn pyramid(stage: &mut Stage, half: Fx, rows: i32, top: Fx) -> lockstep2d::body::BodyId {
     let mut last = None;
     for row in 0..rows {
@@ -29,8 +30,8 @@ fn a_pyramid_carries_a_heavy_top() {
         let mut stage = Stage::with_floor();
         let top = pyramid(&mut stage, fx!(1), 10, num(density));
         stage.run(900);
-        // A contact yields by about its load over m (2 pi 30 Hz)^2. This is 4 cm under 6 kN on a box of 4 kg, and less
-        // in each row below.
+        // A contact yields by about its load divided by m (2 pi 30 Hz)^2. This is 4 cm under 6 kN on a box of 4 kg, and
+        // less in each row below.
         near(stage.place(top).y, fx!(19), fx!(0.25));
         near(stage.place(top).x, fx!(0), fx!(0.05));
         assert_eq!(stage.world.awake_body_count(), 0);
@@ -64,7 +65,8 @@ fn overlaps_are_resolved_gently() {
             stage.add(Vec2::new(x, fx!(0.5) + fx!(0.75) * i64::from(row)), square(fx!(0.5)));
         }
     }
-    // Pushes of 3 m/s add up over the three boxes of a half row.
+    // The boxes overlap. Each contact pushes at up to 3 m/s, and these speeds add up over the three boxes of half a
+    // row.
     stage.run_and(600, |stage| assert!(stage.fastest() < fx!(10), "{} m/s", stage.fastest()));
     assert!(stage.world.deepest_overlap() < fx!(0.02), "{} m deep", stage.world.deepest_overlap());
     assert!(stage.fastest() < fx!(0.05));
@@ -207,8 +209,8 @@ fn a_body_that_became_fixed_stops_a_bullet() {
     }
 }
 
-/// Sample "Unstable Prismatic Joints", also with the radius at which Box2D crashes, as a comment in the
-/// sample says.
+/// Sample "Unstable Prismatic Joints", also with the radius of 0.1 m, at which Box2D crashes according to a comment in
+/// the sample.
 #[test]
 fn a_light_ball_between_heavy_ones_is_stable() {
     for radius in [fx!(0.5), fx!(0.1)] {
@@ -248,7 +250,7 @@ fn a_welded_windmill_gains_no_energy() {
     });
 }
 
-/// A triangle with a corner of a tenth of a degree is refused or has a mass.
+/// A triangle with angles of 0.1 to 6 degrees either is refused or has the mass that follows from its area.
 #[test]
 fn slivers_have_a_mass_or_are_refused() {
     for thousandths in [1, 2, 5, 10, 50] {

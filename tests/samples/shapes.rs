@@ -1,4 +1,5 @@
-//! Box2D's group "Shapes": outlines, compounds and filters. `surfaces.rs` has materials, explosions and wind.
+//! Samples of Box2D's group "Shapes": outlines, compounds and filters. `surfaces.rs` has materials, explosions and
+//! wind.
 
 use lockstep2d::body::{BodyDef, Chain, Filter, Geometry, Polygon, ShapeDef, Sides};
 use lockstep2d::fx;
@@ -71,10 +72,10 @@ fn compounds_stand_and_bear_an_intruder() {
     let table = stage.spawn(BodyDef::dynamic().position(at!(-5, 1)), &parts);
     let wing = |side: Fx| hull(&[Vec2::new(side * 2, fx!(0)), at!(0, 1.33333333333), at!(0, 4)]);
     let ship = stage.spawn(BodyDef::dynamic().position(at!(5, 1)), &[wing(fx!(-1)), wing(fx!(1))]);
-    // The centroids of the triangles are at (0 + 4 / 3 + 4) / 3.
+    // The centroids of the triangles are at the height (0 + 4 / 3 + 4) / 3.
     near(stage.body(ship).local_centre_of_mass().y, fx!(16 / 9), fx!(0.00001));
     near(stage.body(ship).local_centre_of_mass().x, fx!(0), fx!(0.00001));
-    // The table has 6 + 3 + 3 m². Its centre is at (6 * 3.5 + 6 * 1.5) / 12.
+    // The table has 6 + 3 + 3 m². Its centre is at the height (6 * 3.5 + 6 * 1.5) / 12.
     near(stage.body(table).mass(), fx!(12), fx!(0.00001));
     near(stage.body(table).local_centre_of_mass().y, fx!(2.5), fx!(0.00001));
     stage.run(180);

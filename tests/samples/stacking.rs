@@ -1,4 +1,4 @@
-//! Box2D's group "Stacking".
+//! Samples of Box2D's group "Stacking".
 
 use lockstep2d::body::{BodyDef, BodyId, EventSwitches};
 use lockstep2d::fx;
@@ -26,7 +26,7 @@ fn a_stack_falls_when_it_leans_too_far() {
         let place = |i: i32| Vec2::new(lean * i64::from(i), num(i) + fx!(0.5));
         let stack: Vec<_> = (0..10).map(|i| stage.add(place(i), crate_)).collect();
         stage.run(900);
-        // The centre of mass of the upper nine boxes is beside that of the lowest box, by five times `lean`.
+        // The centre of mass of the upper nine boxes is five times `lean` to the side of the centre of the lowest box.
         let top = stage.place(stack[9]).y;
         assert_eq!(top < fx!(9), falls, "a lean of {lean} m: the top is at {top} m");
         assert!(stack.iter().all(|&id| stage.place(id).y > fx!(0.49)), "expected no box in the ground");
@@ -151,7 +151,7 @@ fn all_dominoes_fall() {
         .collect();
     stage.world.apply_impulse(dominoes[0], at!(0.2, 0), at!(-7.5, 1)).expect("valid");
     stage.run(600);
-    // Each domino lies on the next, a metre away.
+    // Each domino leans on the next one, whose foot is a metre away.
     for &id in &dominoes {
         assert!(stage.angle(id) < fx!(-1), "a domino stands at {} rad", stage.angle(id));
     }

@@ -1,4 +1,4 @@
-//! Box2D's group "Shapes": materials, explosions and wind.
+//! Samples of Box2D's group "Shapes": materials, explosions and wind.
 
 use lockstep2d::body::{Area, BodyDef, Chain, Material, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -102,7 +102,7 @@ fn each_link_of_a_chain_has_its_own_speed() {
     }
 }
 
-/// Sample "Explosion". The welds turn the balls after the explosion.
+/// Sample "Explosion". After the explosion, the welds turn the balls.
 #[test]
 fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut stage = Stage::weightless();
@@ -117,7 +117,8 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
     let blast = Explosion { radius: fx!(7), falloff: fx!(3), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     stage.world.explode(&blast).expect("valid");
-    // The nearest point is 7.5 m away. The impulse is 10 N s/m times (1 - 0.5 / 3), times 1 m.
+    // The nearest point of a ball is at 7.5 m, which is 0.5 m within the falloff of 3 m. The impulse is 10 N s/m times
+    // (1 - 0.5 / 3), times the ball's width of 1 m.
     let speed = fx_div(fx!(25 / 3), stage.body(ring[0].0).mass()).expect("positive");
     for &(body, _, place) in &ring {
         near(stage.velocity(body).length(), speed, fx!(0.01));
@@ -180,7 +181,7 @@ fn a_chain_leans_in_the_wind() {
             links.push(link);
         }
         stage.run(1800);
-        // The acceleration is 3 m/s² sideways and 10 m/s² down.
+        // Gravity accelerates the links at 10 m/s², and the wind at 3 m/s² to the side.
         for &link in &links {
             near(stage.angle(link), fx!(0.29146), fx!(0.01));
         }

@@ -1,4 +1,4 @@
-//! Box2D's groups "World", "Determinism" and "Benchmark". `crates/scenes` has the large benchmarks.
+//! Samples of Box2D's groups "World", "Determinism" and "Benchmark". `crates/scenes` has the large benchmarks.
 
 use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
 use lockstep2d::fx;
@@ -102,7 +102,7 @@ fn falling_hinges() -> World {
 fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     while world.awake_body_count() > 0 && world.tick() < 3000 {
         world.step();
-        // Queries leave no trace.
+        // Queries must not change later states.
         let _ = world.cast_ray(at!(-10, 2), at!(20, 0), QueryFilter::default());
     }
     assert_eq!(world.awake_body_count(), 0, "expected the heap to fall asleep");

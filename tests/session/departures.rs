@@ -27,7 +27,8 @@ fn nothing_is_sent_to_a_peer_that_has_gone() {
     assert_eq!(net.sent_to[3], sent, "5 s after its last packet, nothing is sent to it");
 }
 
-/// The contact dies before it has sent a packet of the match.
+/// The contact is the peer through which the newcomer joins. It crashes before it has sent the newcomer a packet of the
+/// match.
 #[test]
 fn nothing_is_sent_to_a_contact_that_has_gone() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -76,7 +77,7 @@ fn a_match_that_many_have_left_admits_more() {
     );
 }
 
-/// The contact knows the spectator and its old session.
+/// When the spectator asks to join again, its contact still knows it and its old session.
 #[test]
 fn a_spectator_that_asks_again_is_back() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -90,7 +91,8 @@ fn a_spectator_that_asks_again_is_back() {
     net.assert_all_play();
 }
 
-/// The server has lost its vote, and knows the last player only from the others.
+/// The server was cut off and has lost its vote. It knows the player that joins last only through the other players,
+/// which then leave.
 #[test]
 fn a_dropped_server_whose_contacts_leave_finds_another() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -129,14 +131,14 @@ fn a_dropped_player_that_asks_again_is_back() {
     net.run(15 * S);
     net.assert_all_play();
     assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 3);
-    // A player with a vote that asks again loses its seat for a second.
+    // If a player that has a vote asks to join again, it loses its seat for a second.
     net.nodes[2].endpoint.ask(address(2));
     net.run(20 * S);
     net.assert_all_play();
     assert_eq!(net.nodes[2].endpoint.session().expect("valid").seats().count_ones(), 1);
 }
 
-/// A spectator became a player with other bounds of the delay.
+/// The spectator has become a player, with new bounds of its input delay.
 #[test]
 fn a_peer_that_asks_again_keeps_its_role_and_its_delay() {
     let mut net = Net::new(20 * MS, 0, 1000);
@@ -153,7 +155,8 @@ fn a_peer_that_asks_again_keeps_its_role_and_its_delay() {
     }
 }
 
-/// The players of the first match have played for longer than those of the second one.
+/// Two matches with the hosts 0 and 2. Peer 1 plays in the first match, which has run for 5 s when the second one
+/// begins.
 fn two_matches(state_bytes: usize) -> Net {
     let mut net = Net::new(20 * MS, 0, state_bytes);
     net.host();
@@ -165,7 +168,8 @@ fn two_matches(state_bytes: usize) -> Net {
     net
 }
 
-/// The host of the first match still serves the player that has gone. Both matches have the same tag.
+/// The host of the first match still sends packets to the player that has gone to the second match. Both matches have
+/// the same tag, which therefore does not tell their packets apart.
 #[test]
 fn nothing_of_a_match_reaches_the_next_one() {
     let mut net = two_matches(1000);

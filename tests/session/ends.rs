@@ -25,8 +25,8 @@ fn ticks_after_the_end_are_taken_back() {
     }
 }
 
-/// The guest does not hear the host from half a second before to some seconds after the decision. The inputs that
-/// the guest lacks take several packets.
+/// The guest does not hear the host from 5 s to 9 s, and the host leaves at 5.5 s. The inputs that the guest then lacks
+/// take several packets.
 #[test]
 fn a_peer_that_leaves_answers_until_the_others_have_its_inputs() {
     let mut sim = players(2, link(MS), |config| {

@@ -4,14 +4,13 @@ use lockstep2d::session::Fault;
 
 use super::{storm, sweep};
 
-/// Largest number of matches to play with a fault.
+/// Number of matches, in at least one of which a fault must break an invariant.
 const MATCHES: u64 = 300;
-/// Largest number of matches to play in the long run with a fault that breaks an invariant in about one match of a
-/// thousand.
+/// Number of matches in the long run with a fault that breaks an invariant in about one match of a thousand.
 const MATCHES_RARE: u64 = 2000;
 
-/// Each fault, the first seed, and the difference between seeds. With a difference of 10, all matches are of one
-/// `Class`.
+/// Each fault, the first seed, and the difference between seeds. The last digit of a seed gives the `Class` of the
+/// match, so with a difference of 10 all matches are of one class.
 const FAULTS: [(Fault, u64, u64); 13] = [
     (Fault::NoFreeze, 0, 1),
     (Fault::OwnCut, 0, 1),

@@ -40,7 +40,7 @@ impl Match {
     pub(super) fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
-        // Only crashed peers may have installed the newest view, so the newest view of the living peers counts.
+        // Views that only crashed peers have installed do not count. The newest view of the living peers does.
         let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
         let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);
@@ -90,7 +90,8 @@ impl Match {
         (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
     }
 
-    /// A peer that has confirmed fewer than two ticks since `before`.
+    /// A living peer that has confirmed fewer than two ticks since `before`, although all living peers have their
+    /// seats.
     pub(super) fn stands_still(&self, before: &[u32]) -> Option<usize> {
         if self.class.ends_early() || self.all_seated() != Some(true) {
             return None;

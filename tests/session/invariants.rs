@@ -45,7 +45,8 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// A peer that has left keeps answering until all others know of it and have its inputs, or until a timeout.
+    /// Checks that a peer that has left keeps answering until all others know of its departure and have its inputs, or
+    /// until a timeout.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
@@ -95,7 +96,7 @@ impl Sim {
         self.peers[index].seen_view = self.peers[index].session.view().number;
     }
 
-    /// A quorum of the previous view has the inputs of all ticks before the cut.
+    /// Checks that a quorum of the previous view has the inputs of all ticks before the cut.
     fn check_cut_is_held(&mut self, view: &View) {
         let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
             return;
@@ -112,7 +113,7 @@ impl Sim {
         }
     }
 
-    /// Final ticks belong to the shared history.
+    /// Checks that the inputs of the final ticks give the states of the shared history, and appends new states to it.
     fn check_final(&mut self, index: usize) {
         let fin = self.peers[index].session.final_tick();
         let from = self.peers[index].seen_final;
@@ -140,7 +141,7 @@ impl Sim {
         self.peers[index].seen_final = fin;
     }
 
-    /// The final input of each seat is the one that its owner issued for the tick.
+    /// Checks that the final input of each seat is the one that its owner issued for the tick.
     fn check_issued(&mut self, index: usize, tick: Tick, inputs: &TickInputs) {
         let view = self.peers[index].session.view();
         let wrong =
@@ -156,7 +157,8 @@ impl Sim {
         }
     }
 
-    /// Confirmed ticks belong to the shared history; memory is bounded.
+    /// Checks that the states of confirmed ticks are those of the shared history, and that the number of kept saves is
+    /// bounded.
     fn check_played(&mut self, index: usize) {
         let peer = &self.peers[index];
         let confirmed = peer.session.confirmed();

@@ -98,7 +98,8 @@ fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     }
 }
 
-/// Another player serves the spectator, which continues from the ticks that it has.
+/// When the spectator's contact has gone, another player sends the following ticks. The spectator downloads no new
+/// state.
 #[test]
 fn a_spectator_whose_contact_goes_finds_another() {
     let mut net = Net::new(20 * MS, 1, 1000);
@@ -121,7 +122,7 @@ fn nothing_is_sent_to_an_address_that_has_not_answered() {
     let mut net = Net::new(10 * MS, 0, 50_000);
     net.host();
     net.run(S);
-    // Forged hellos with the address of a victim.
+    // Forged hellos that give the victim's address as their sender.
     let mut forged = Endpoint::join(config(), identity(7), Role::Spectator, address(1)).expect("valid");
     let mut sent = 0;
     for _ in 0..100 {
@@ -149,7 +150,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Each of six spectators is known only to its own contact.
+/// Six spectators join through one another. Each is known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);
@@ -184,7 +185,8 @@ fn an_address_may_change() {
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
-/// A NAT gives a player another port, and blocks packets from there to a peer until this peer has sent a packet there.
+/// A NAT gives a player another port. It drops the packets from this port to one of the peers until that peer has sent
+/// a packet to the port.
 #[test]
 fn a_changed_address_is_known_from_others() {
     let mut net = Net::new(30 * MS, 0, 1000);
@@ -302,7 +304,8 @@ fn seats_and_offers_that_do_not_exist_are_errors() {
     assert!(Endpoint::join(config(), identity, Role::Spectator, address(1)).is_err());
 }
 
-/// Asks a host to join until it answers with a challenge and takes the cookie back. Returns a refusal.
+/// Sends the packets of a guest that asks a host to join: a hello, which the host answers with a challenge, and a hello
+/// with the cookie of the challenge. Returns the refusal, if any.
 fn ask(host: &mut Endpoint, guest: &mut Endpoint, number: u8, now: u64) -> Option<JoinEvent> {
     guest.update(now);
     for _ in 0..2 {

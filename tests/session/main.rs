@@ -44,7 +44,7 @@ fn every_invariant_holds_in_storms() {
     sweep::for_each((0..seeds).collect(), |seed| {
         let (failure, figures) = storm::play(seed, |_| ());
         assert_eq!(failure, None, "seed {seed}: {figures:?}");
-        // A match that has ended may count as one without a quorum.
+        // A match whose peers have finished may also count as one without a quorum, so `finished` is tested as well.
         let stopped = figures.no_quorum == 1 && figures.finished == 0;
         assert!(figures.ticks > TICKS_MIN || stopped, "seed {seed}: {figures:?}");
         short.fetch_add(u64::from(figures.ticks < TICKS_USUAL), Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Endpoints that join a match in simulated time.
+//! Endpoints that join a match, in simulated time.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -26,7 +26,7 @@ pub(super) struct Node {
     pub(super) last_tick: Us,
 }
 
-/// Arrival, number, sender, receiver and bytes.
+/// Arrival time, number, sender, receiver and bytes.
 pub(super) type Datagram = (Us, u64, u8, u8, Vec<u8>);
 
 pub(super) struct Net {

@@ -120,7 +120,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
     }
 }
 
-/// Measured ping, jitter and loss equal those of the links.
+/// Measured ping, jitter and loss agree with those of the links.
 #[test]
 fn measurements_are_those_of_the_links() {
     let mut sim = players(2, LinkConditions { jitter: 10 * MS, loss: 20, ..link(50 * MS) }, |_| ());
@@ -132,7 +132,7 @@ fn measurements_are_those_of_the_links() {
     assert_eq!(link.bytes_sent, sim.bytes_from(0));
 }
 
-/// With a long input delay, the inputs of the slow peer arrive in time. The others stop because they may not run
+/// The inputs of a slow peer with a long input delay arrive in time. The others stop even so, because they may not run
 /// further ahead of the slow peer.
 #[test]
 fn a_slow_peer_slows_others_and_is_named() {
@@ -196,7 +196,7 @@ fn a_large_match_plays_at_full_speed() {
     assert!(pace >= 1960, "{pace} hundredths of a tick per second");
 }
 
-/// The inputs of a round trip do not fit in one packet.
+/// The inputs of all ticks of a round trip do not fit in one packet.
 #[test]
 fn large_inputs_play_at_full_speed() {
     for (input_bytes, count, latency) in [(512, 2, 40), (512, 2, 100), (512, 4, 40), (200, 4, 100)] {

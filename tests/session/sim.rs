@@ -285,7 +285,8 @@ impl Sim {
                         input.chunks_exact(size as usize).nth(place).expect("an input for each seat");
                     peer.issued.entry(number).or_default().push(issued.to_vec());
                 }
-                // A peer holds its input for a while.
+                // The first byte of each seat's input depends on `peer.input`, which counts up, and jumps to a random
+                // number at each multiple of 3.
                 peer.input =
                     if peer.input.is_multiple_of(3) { mix(peer.input, local) } else { peer.input + 1 };
             }

@@ -49,7 +49,7 @@ impl Written {
         self
     }
 
-    /// Appends `Some` of numbers of the type `fx`, given in units of 1/2.
+    /// Appends a `Some` that contains numbers of the type `fx`, given in units of 1/2.
     fn some(self, halves: &[i64]) -> Self {
         self.u8(1).fx(halves)
     }

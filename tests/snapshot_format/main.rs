@@ -72,7 +72,7 @@ fn the_state_hash_is_made_of_the_sections() {
         let bytes = world.to_bytes();
         let mut reader = Reader::new(&bytes);
         let mut sections = reader.world();
-        // Islands come before contacts in the bytes.
+        // In the bytes, islands come before contacts. The digests are in the order of `Section`.
         sections.sort_by_key(|(section, _)| *section);
         let read = World::from_bytes(&bytes).expect("what was written");
         assert_eq!(read.digest(), world.digest(), "digests must not depend on earlier saves");

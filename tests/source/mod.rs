@@ -16,7 +16,7 @@ pub(crate) struct Token {
     pub(crate) line: usize,
 }
 
-/// Files with one of these extensions (`""` for none), sorted by path.
+/// Files below a folder that have one of these extensions (`""` for no extension), sorted by path.
 pub(crate) fn files(folder: &str, extensions: &[&str]) -> Vec<Source> {
     let root = &lockstep2d_tests::root();
     let mut paths = Vec::new();
@@ -45,8 +45,8 @@ fn collect(folder: &Path, extensions: &[&str], paths: &mut Vec<PathBuf>) {
     }
 }
 
-/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token, which is only
-/// its first quote. A raw string becomes one token with its text. Comments produce no tokens.
+/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token, whose text is
+/// only the opening quote. A raw string becomes one token with its whole text. Comments produce no tokens.
 pub(crate) fn tokens(code: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let (mut rest, mut line) = (code, 1);

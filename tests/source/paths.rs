@@ -15,7 +15,7 @@ pub(crate) struct PathUse {
     is_used_here: bool,
 }
 
-/// Modules of a crate. Tests, which are files and inline modules named `tests`, are left out.
+/// Modules of a crate. Files and inline modules named `tests` are left out.
 pub(crate) struct Crate {
     modules: BTreeMap<Vec<String>, Vec<PathUse>>,
 }
@@ -32,8 +32,8 @@ impl Crate {
         Crate { modules: files.map(read).collect() }
     }
 
-    /// Modules on whose files a module's file depends, each with the line of the path. A path through a re-export leads
-    /// to the file that defines the item. The re-export itself only counts if its module uses the name.
+    /// Modules in whose files a module's file uses an item, each with the line of the path. A path through a re-export
+    /// leads to the file that defines the item. The re-export itself counts only if its module uses the name.
     pub(crate) fn dependencies(&self, place: &[String]) -> Vec<(Vec<String>, usize)> {
         let paths = self.modules[place].iter().filter(|path| path.reexport.is_none() || path.is_used_here);
         let resolved = paths.map(|path| (self.resolve(&path.path, 0), path.line));
@@ -102,7 +102,7 @@ pub(crate) fn modules(files: &[Source]) -> Vec<(Vec<String>, String)> {
 fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>) -> bool) -> Vec<PathUse> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut found = Vec::new();
-    // Name of the inline module that each open brace opens.
+    // For each open brace, the name of the inline module that it opens, if any.
     let mut braces: Vec<Option<String>> = Vec::new();
     // Names that occur outside of paths and tests.
     let mut plain = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! Commands for worlds with many bodies of a kind.
+//! Commands for worlds with many bodies of one kind.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::codec;
@@ -45,7 +45,7 @@ pub(super) fn each(body: BodyDef, shape: ShapeDef, positions: impl Iterator<Item
     Command::SpawnEach { body, shapes: vec![shape], poses: positions.map(pose).collect() }
 }
 
-/// Places in a square of `side` times `side`, `gap` apart.
+/// Places of a square grid with `side` rows and columns, `gap` metres apart.
 pub(super) fn grid(side: i64, gap: Fx) -> impl Iterator<Item = (Fx, Fx)> {
     (0..side * side).map(move |number| (gap * (number % side), gap * (number / side)))
 }

@@ -1,4 +1,4 @@
-//! Time of the setup and of the ticks of a game per work unit.
+//! Measures the time per work unit that the setup and the ticks of a game take.
 
 use std::time::{Duration, Instant};
 
@@ -23,10 +23,11 @@ pub(super) fn computed() -> Duration {
 /// Commands of a tick, given its number.
 pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
-/// Largest number of repetitions of a pair of short commands in a tick. This number fits into a block of a file.
+/// Largest number of times that a pair of short commands is repeated in a tick. So many commands still fit into one
+/// block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
-/// Maximum number of doublings of the size of a case until a tick takes long enough.
+/// Maximum number of times that the size of a case is doubled, until a tick takes long enough to be judged.
 const DOUBLED_MAX: u32 = 7;
 
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +65,7 @@ fn limits(total_work: u64) -> Limits {
     }
 }
 
-/// Cost of the setup, and cost of the tick with the highest cost per unit. Each is the best of three runs.
+/// Cost of the setup, and cost of the tick with the highest cost per unit. Each is the lowest of three runs.
 fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
@@ -96,8 +97,8 @@ fn costs(file: &[u8]) -> [Cost; 2] {
 /// Setup, number of ticks and commands.
 pub(super) type Case<'a> = (SandboxSetup, u64, Script<'a>);
 
-/// Returns the name of a case that is too expensive. The size is doubled until a tick takes long enough. A case without
-/// such a tick counts as an error, because it would test nothing.
+/// Doubles the size of a case until a tick takes long enough to be judged. Returns a description of the case if it is
+/// too expensive, or if no size has such a tick, because the case would then test nothing.
 pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Case<'a>) -> Option<String> {
     for doubled in 0..=DOUBLED_MAX {
         let size = size << doubled;
@@ -112,7 +113,8 @@ pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Cas
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
 }
 
-/// Repeats commands until they take most of the time of a tick.
+/// Repeats commands until they take most of the time of a tick. Returns a description of the case if it is too
+/// expensive.
 pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[Command]) -> Option<String> {
     let tick_of = |repeats: usize| {
         let script = |_| once.iter().cycle().take(repeats * once.len()).cloned().collect();
@@ -133,7 +135,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
 }
 
-/// Prints the costs. Returns the name of the case if a cost is too high.
+/// Prints the costs. Returns a description of the case if a cost is too high.
 fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     let mut wrong = None;
     for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
@@ -145,8 +147,8 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with limits of a half, a fifth and a twentieth of its work. The setup alone may exceed these limits.
-/// Returns the name of the case if verification stops later than the units allow.
+/// Verifies a file with limits of a half, a fifth and a twentieth of its work. The setup alone may exceed such a limit.
+/// Returns a description of the case if verification stops later than the units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {
         let limits = limits(u64::MAX);

@@ -57,7 +57,7 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// A hub with motors of very different strengths.
+/// A hub to which hinges join `count` bodies. The hinges have motors of very different strengths.
 fn motors_of_hub(count: i64) -> Case<'static> {
     let limbs = u32::try_from(count).expect("a number");
     let mut commands =

@@ -1,7 +1,7 @@
 //! Sensors report every shape that crosses them within a tick, in the order of the crossings.
 //!
-//! The oracle moves a [`Probe`] with the visitor's shape along its path, while the sensors stand still. It samples the
-//! overlap, and bisects the times of its changes.
+//! The oracle moves a [`Probe`] with the visitor's shape along the visitor's path, while the sensors stand still. It
+//! samples whether probe and sensor overlap, and finds the times of changes by bisection.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Chain, Geometry, MassSource, Polygon, ShapeDef, ShapeId};
 use lockstep2d::fx;
@@ -64,7 +64,7 @@ fn visitor(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Times in ticks at which a path enters (`true`) and leaves a sensor that stands still.
+/// Times in ticks at which a path enters (`true`) or leaves (`false`) a sensor that stands still.
 fn visits(world: &World, sensor: ShapeId, geometry: Geometry, path: &Path, end: Fx) -> Vec<(Fx, bool)> {
     let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
     let inside = |time: Fx| world.overlap_shape(&path.probe(geometry, time), filter).contains(&sensor);

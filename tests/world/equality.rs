@@ -10,7 +10,8 @@ use std::sync::Mutex;
 use super::churn::Churn;
 use super::sweep;
 
-/// Disturbance of a world that must not affect results.
+/// Variant of a world: another broad phase, backend or number of threads, or a disturbance of its caches. Results must
+/// not depend on the variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Variant {
     BruteForce,

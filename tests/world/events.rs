@@ -36,8 +36,8 @@ fn a_hit_tells_where_how_fast_and_which_way() {
     assert_eq!((hit.shape_a, hit.shape_b), (shape_of(&world, left), shape_of(&world, right)));
     assert!((hit.approach_speed - fx!(9)).abs() < fx!(0.0001), "{}", hit.approach_speed);
     assert!(hit.normal.x > fx!(0.9999) && hit.normal.y.abs() < fx!(0.001), "{:?}", hit.normal);
-    // The balls close a gap of 3 m at 9 m/s. Meanwhile the left one moves 2 m. They meet at x = 0.5 m, within a tick of
-    // motion.
+    // The balls close a gap of 3 m at 9 m/s, while the left one moves 2 m. They meet at x = 0.5 m, up to the motion of
+    // one tick.
     assert!((hit.point.x - fx!(0.5)).abs() < fx!(0.2) && hit.point.y.abs() < fx!(0.01), "{:?}", hit.point);
 }
 

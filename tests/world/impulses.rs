@@ -1,4 +1,4 @@
-//! Impulses, forces, springs and motors that exceed the formats.
+//! Impulses, forces, springs and motors whose values exceed the ranges of the solver's number formats.
 
 use lockstep2d::body::{Area, BodyDef, MassSource};
 use lockstep2d::fx;
@@ -57,7 +57,8 @@ fn a_force_acts_at_its_point_although_the_mass_changes() {
     assert!(body.angular_velocity().abs() < fx!(0.0001), "{}", body.angular_velocity());
 }
 
-/// The largest force of 100 N accelerates 1 kg for a tick, however hard the spring would pull without this limit.
+/// A force of 100 N, the limit of the spring, accelerates 1 kg for a tick, however hard the spring would pull without
+/// it.
 #[test]
 fn a_long_spring_of_limited_force_pulls_along_its_direction() {
     for (hertz, scale, in_block) in [
@@ -95,12 +96,12 @@ fn a_motor_brakes_a_fast_body_along_the_difference_of_the_velocities() {
     let motor = Motor::new().linear((fx!(500), fx!(100)), fx!(10));
     world.add_joint(&JointDef::new(wall, id, motor)).expect("valid");
     world.step();
-    // The velocities differ by 890 m/s and 160 m/s.
+    // The target velocity of the motor differs from that of the body by (890, 160) m/s.
     direction_is(world.body(id).expect("there").velocity() - start, (fx!(0.984221), fx!(0.176939)));
     assert_eq!(world.faults(), 0);
 }
 
-/// The velocity is limited to 400 m/s.
+/// The velocity is clamped to a length of 400 m/s, and keeps its direction.
 #[test]
 fn a_light_body_moves_in_the_direction_of_its_force() {
     for damping in [fx!(0), fx!(1), fx!(20)] {
@@ -121,7 +122,7 @@ fn a_light_body_moves_in_the_direction_of_its_force() {
     }
 }
 
-/// `w = r P / (m k^2)`.
+/// An impulse `P` at an arm `r` gives the angular velocity `w = r P / (m k^2)`, with the radius of gyration `k`.
 #[test]
 fn very_heavy_and_very_light_bodies_are_turned_by_impulses() {
     for (mass, gyration, arm, impulse) in [

@@ -70,7 +70,7 @@ fn an_anchor_far_away_on_a_fixed_body_holds_like_a_near_one() {
                 (near.joint_force(joint).expect("there"), far.joint_force(far_joint).expect("there"));
             let within = fx!(0.02) + force.length() / 100;
             assert!((force - far_force).length() < within, "{kind:?}: {force:?} N, {far_force:?} N");
-            // Where the anchors come apart, the lever arms at A differ.
+            // The anchors come apart a little, so the lever arms at A differ.
             assert!((torque - far_torque).abs() < within, "{kind:?}: {torque} N m, {far_torque} N m");
         }
     }
@@ -142,7 +142,7 @@ fn a_joint_yields_by_its_own_softness() {
         (Distance::rod(fx!(1)).into(), false),
         (Wheel::new().into(), false),
         (limit, false),
-        // A second joint is solved in a block with the first.
+        // If `extra`, a second joint is solved in a block with this one.
         (hinge, true),
         (Weld::rigid().into(), true),
     ] {
@@ -176,7 +176,8 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// If joints of dynamic bodies have the softness of the world as their own, the results are equal bit for bit.
+/// If each joint of dynamic bodies gets the softness of the world as its own softness, the results do not change by a
+/// bit.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {

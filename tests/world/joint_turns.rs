@@ -8,7 +8,7 @@ use lockstep2d::world::World;
 
 use super::{ball, rectangle, run, spawn, weightless};
 
-/// A disc at 1 m from a hinge, about which a motor has turned it by 6.4 turns.
+/// A disc with its centre 1 m from a hinge. A motor has turned the disc about the hinge by more than 6 turns.
 fn turned() -> (World, [BodyId; 2], JointId) {
     let mut world = weightless();
     let axle = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
@@ -90,7 +90,8 @@ fn a_rolled_rack_keeps_its_place_when_it_is_fitted_or_changed() {
     let rolled = *world.joint(rack).expect("there").def();
     let fitted = world.fit_joint(&rolled).expect("valid");
     assert!((fitted.frame_b.anchor - rolled.frame_b.anchor).length() > fx!(9), "it has rolled three turns");
-    // A new definition may move the rack by a millimetre. The rack then stays on its teeth, and does not jump by turns.
+    // A new definition may move the anchor of the rack by a millimetre. The joint then keeps its count of whole turns,
+    // so that the rack does not jump.
     let moved = rolled.anchor_b(rolled.frame_b.anchor + Vec2::new(fx!(0.001), fx!(0.001)));
     for def in [fitted, rolled.user_data(7), moved] {
         let mut world = world.clone();

@@ -19,7 +19,7 @@ fn pose(world: &World, id: BodyId) -> (Vec2<Fx>, Angle) {
     (body.position(), body.angle())
 }
 
-/// With constant lever arms, the boxes would stay on their corners.
+/// If lever arms were constant, the boxes would stay on their corners.
 #[test]
 fn a_box_tips_over_on_ground_of_any_length() {
     for degrees in [fx!(20), fx!(44), fx!(50), fx!(80)] {

@@ -31,7 +31,8 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     close(b.velocity().y, fx!(0), fx!(0.001));
 }
 
-/// The impulse is `2 v / (1 / m1 + 1 / m2 + d² / I)`.
+/// A ball of mass `m1` hits a box of mass `m2` and inertia `I` at the distance `d` from its centre. The impulse is
+/// `2 v / (1 / m1 + 1 / m2 + d² / I)`.
 #[test]
 fn a_box_that_turns_takes_less() {
     let mut world = weightless();
@@ -135,8 +136,8 @@ fn locks_may_change_while_it_moves() {
     assert!(world.body(id).expect("there").angle() != Angle::ZERO, "expected the body to turn again");
 }
 
-/// The reported torque of a rope about its anchor is zero, even if one of its bodies cannot turn. A motor between a
-/// body that cannot turn and a body that can reports its torque.
+/// The reported torque of a rope about its anchor is zero, even if the rotation of a body at the rope is locked. The
+/// motor of a hinge reports its torque even if the rotation of one of the two bodies is locked.
 #[test]
 fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
     let mut world = World::default();
@@ -160,7 +161,8 @@ fn the_torque_of_a_joint_is_that_on_the_body_that_turns() {
     close(world.joint_force(motor).expect("there").1, fx!(10), fx!(0.1));
 }
 
-/// A kinematic body that hits a body within a tick carries it for the rest of the tick, but not along locked axes.
+/// A kinematic body that hits another body within a tick carries that body for the rest of the tick, but not along
+/// locked axes.
 #[test]
 fn a_kinematic_body_does_not_carry_along_locked_axes() {
     let mut world = weightless();

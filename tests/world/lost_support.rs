@@ -8,8 +8,8 @@ use lockstep2d::world::{Config, World};
 
 use super::{rectangle, run, spawn, square};
 
-/// A body that was held does not fall asleep before it begins to fall. At a high rate and in low gravity it stays below
-/// the sleep speed in its first tick.
+/// A body that was held must not fall asleep before it begins to fall. At a high tick rate and in low gravity, it is
+/// still slower than the sleep speed after its first tick.
 #[test]
 fn a_body_that_loses_its_joint_falls() {
     let config = Config { tick_rate: 240, gravity: Vec2::new(fx!(0), fx!(-3)), ..Config::default() };

@@ -13,7 +13,7 @@ fn square(half: Fx) -> ShapeDef {
 
 fn run(world: &mut World, ticks: u32) {
     for _ in 0..ticks {
-        // A copy without caches continues equally.
+        // A copy without caches has equal states.
         let mut copy = World::from_bytes(&world.to_bytes()).expect("valid");
         world.step();
         copy.step();
@@ -122,7 +122,8 @@ fn a_body_gains_and_loses_its_mass_with_its_shapes() {
     assert_eq!(world.body(body).expect("there").velocity(), falling);
 }
 
-/// Contacts and joints cease and begin to act while bodies are awake, and while they sleep.
+/// When a body loses its mass, its contacts and joints cease to act, and they act again when it has a mass. This holds
+/// while bodies are awake and while they sleep.
 #[test]
 fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     let mut world = World::default();
@@ -142,7 +143,7 @@ fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     world.set_shape(shape, &weightless).expect("valid");
     run(&mut world, 60);
     assert_eq!(contacts(&world), 0);
-    // The box sleeps while the hook is awake: the joint does not act.
+    // The box sleeps while the hook is awake, because a joint between two bodies without mass does not act.
     world.set_velocity(hook, Vec2::new(fx!(0), fx!(1)), fx!(0)).expect("dynamic");
     run(&mut world, 60);
     assert!(world.body(body).expect("there").is_asleep() && !world.body(hook).expect("there").is_asleep());

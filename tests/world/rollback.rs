@@ -236,8 +236,8 @@ fn snapshots_come_back_from_their_bytes() {
     }
 }
 
-/// A thin rod moves into a wall in a tick without new fat AABBs, and a joint disables the collisions of rod and wall.
-/// The worlds that are restored had no such joint before.
+/// A thin rod moves into a wall during a tick in which no fat AABB changes. A filter joint disables collisions of rod
+/// and wall. The worlds into which the snapshot is restored do not have this joint.
 #[test]
 fn a_restore_brings_back_which_pairs_joints_keep_apart() {
     let mut world = weightless();

@@ -26,7 +26,7 @@ fn settings_take_effect() {
     let settings = BodySettings { gravity_scale: fx!(0), linear_damping: fx!(1), ..settings };
     world.set_body(id, &settings).expect("valid");
     run(&mut world, 60);
-    // Damping of 1 for one second leaves e^-1 of 5 m/s, and slightly more because it is implicit.
+    // Damping of 1 for one second leaves e^-1 of 5 m/s, and slightly more because the integration is implicit.
     let left = world.body(id).expect("there").velocity().y;
     assert!((left - fx!(1.843)).abs() < fx!(0.01), "{left}");
     world.set_user_data(id, 7).expect("there");
@@ -215,8 +215,8 @@ impl Stage {
         Stage { world, floor, lift, ball, gone, gone_shape }
     }
 
-    /// The command is refused while the ball is awake and while it sleeps, without effect on the state or the next
-    /// tick.
+    /// Expects that the command is refused while the ball is awake and while it sleeps, and that it affects neither the
+    /// state nor the next tick.
     fn refuses(&mut self, command: &Command, matches: fn(&WorldError) -> bool) {
         for _ in 0..2 {
             let mut unasked = self.world.clone();
@@ -364,7 +364,8 @@ fn a_transform_replaces_a_target() {
     }
 }
 
-/// Cached manifolds measure displacements modulo 1024 m.
+/// Cached manifolds measure displacements modulo 1024 m. A body that is moved by exactly this distance must still lose
+/// its contact.
 #[test]
 fn a_body_moved_by_a_kilometre_leaves_its_contact() {
     let mut world = World::default();

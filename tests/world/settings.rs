@@ -48,7 +48,7 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // for the change from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // The frequency of contacts does not change while their 30 Hz are at most an eighth of the sub-step
+                // Heights hardly change, because contacts keep their 30 Hz: these are at most an eighth of the sub-step
                 // rate.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
@@ -185,7 +185,8 @@ fn settings_are_part_of_a_snapshot() {
     assert_eq!((world.state_hash(), world.config().solver.sub_steps), (hash, 4));
 }
 
-/// The conversion rounds the impulses of joints, which the solver also caches.
+/// A change of the sub-steps converts the impulses of joints, which rounds them. The solver's caches must not keep
+/// impulses from before the conversion.
 #[test]
 fn settings_that_change_and_change_back_within_a_tick_leave_nothing_in_the_caches() {
     let (mut world, _) = world_with_floor();

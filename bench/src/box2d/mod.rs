@@ -22,8 +22,8 @@ pub struct Box2d {
     saves: [Vec<u8>; SAVES],
 }
 
-// Invariant of `Box2d`, named by the SAFETY comments: the world exists from `new` to `drop`, the handles in `bodies`
-// refer to bodies in it, and no other code has access to them.
+// Invariant of `Box2d`, to which the SAFETY comments refer: the world exists from `new` to `drop`, the handles in
+// `bodies` refer to bodies in this world, and no other code has access to the world or its bodies.
 
 impl Box2d {
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
@@ -217,8 +217,8 @@ impl Engine for Box2d {
 /// Replaces Box2D's log, whose messages would mix with the results and distort the times.
 unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
-/// Whether a contact that a body reports is counted. Two non-static bodies both report their contact, and only the
-/// report of body A counts.
+/// Whether a contact in the contact list of `body` is counted. A contact between two non-static bodies is in the lists
+/// of both bodies, and is counted only in the list of its body A.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
     // SAFETY: the shapes of a contact of the last step exist.
     unsafe {

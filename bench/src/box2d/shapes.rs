@@ -43,7 +43,7 @@ pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     Ok(def)
 }
 
-/// Adds a shape. Events other than hit events stay off, as by default in Box2D, which saves time.
+/// Adds a shape. Contact and sensor events stay off, which is Box2D's default and saves time.
 pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
     ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
     // SAFETY: the function has no preconditions.

@@ -155,9 +155,9 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
 /// The lowest 4 of the 32 bits of a rapier2d filter stand for categories. The other 28 stand for negative groups.
 const CATEGORY_BITS: u32 = 0xF;
 
-/// Filter in rapier2d, which has 32 categories and no group numbers. A negative group becomes one of 28 categories, in
-/// rotation. Two shapes in one of these categories do not collide, so ragdolls whose groups differ by a multiple of 28
-/// pass through each other.
+/// Filter in rapier2d, which has 32 categories and no group numbers. A negative group `-n` becomes the category of bit
+/// `4 + n % 28`. Two shapes in one of these categories do not collide, so ragdolls whose groups differ by a multiple of
+/// 28 pass through each other.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));
@@ -175,9 +175,10 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// Joint in rapier2d, with rapier2d's default stiffness. With the 60 Hz and the damping ratio of 2 of the other
-/// engines, the cloth of `joint_grid` moves at 13 m/s in rapier2d after 100 steps, instead of 1.4 m/s. rapier2d has one
-/// motor per axis, so a spring replaces the motor, and the hinges of ragdolls lack their friction.
+/// Joint in rapier2d, with rapier2d's default stiffness. With the stiffness of the other engines (60 Hz and a damping
+/// ratio of 2), the cloth of `joint_grid` would move at 13 m/s in rapier2d after 100 steps; in the other engines it
+/// moves at 1.4 m/s. A joint in rapier2d has one motor per axis, which a spring occupies. The hinges of ragdolls have
+/// both a spring and a motor that acts as friction; in rapier2d they lack the friction.
 pub fn joint(def: &JointDef) -> Result<GenericJoint> {
     let JointKind::Revolute(hinge) = &def.kind else { bail!("only revolute joints are supported") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));

@@ -94,9 +94,9 @@ fn saving(rounds: &[Round]) -> Saving {
     }
 }
 
-/// Measures frames. Slot 0 has the save before the first tick of a frame, and each other slot has the save after a
-/// tick. The time of saves and hashes is the difference between frames with and without them, because reading the
-/// clock takes as long as saving a small world.
+/// Measures frames. Slot 0 has the save before the first tick of a frame, and slot `n` the save after its `n`th tick.
+/// The time of saves and hashes is the difference between frames with and without them, because reading the clock takes
+/// as long as saving a small world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));

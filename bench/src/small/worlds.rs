@@ -79,7 +79,7 @@ fn regular(corners: u32) -> Result<Geometry, WorldError> {
     Ok(Polygon::hull(&corners)?.into())
 }
 
-/// A pit of `isqrt(n)` columns, at least two, with rows shifted by 0.1 and -0.13 m in turn.
+/// A pit with `isqrt(n)` columns of bodies, at least two. Even rows are shifted by 0.1 m, odd rows by -0.13 m.
 fn pit(bodies: u32, shape: impl Fn(u32) -> Result<Geometry, WorldError>) -> Setup {
     let mut scene = Builder::new(config());
     let columns = (2 * bodies.isqrt() / 2).max(2);

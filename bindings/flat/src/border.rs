@@ -137,7 +137,8 @@ impl<'a, T: Plain> Out<'a, T> {
         self.0.is_null()
     }
 
-    /// Checks the pointer before an operation whose result would otherwise be lost.
+    /// Checks the pointer of a required result. Call this before an operation whose result would be lost if it could
+    /// not be written.
     pub(crate) fn check(&self) -> Outcome {
         check(self.0)
     }
@@ -183,11 +184,12 @@ impl<'a, T: Plain> Out<'a, T> {
 
 /// Runs the body of a function, and converts failures and panics to status codes.
 pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
-    // A panic poisons the mutexes of the objects that it leaves in an unknown state.
+    // Unwinding is safe: a panic poisons the mutexes of the objects that it may leave in an invalid state, and later
+    // calls refuse these objects.
     let result = catch_unwind(AssertUnwindSafe(body));
     let status = match result {
         Ok(Ok(())) => Status::Ok,
-        // The text of the last failure stays, because a poll that returns nothing is no failure.
+        // `Status::None` is not a failure, so the text of the last failure stays.
         Ok(Err(Failure { status: Status::None, .. })) => Status::None,
         Ok(Err(failure)) => note(failure),
         Err(_) => note(Failure::new(Status::Internal, "an error in the library")),

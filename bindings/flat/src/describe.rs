@@ -56,7 +56,7 @@ pub(crate) struct Function {
     pub(crate) docs: &'static [&'static str],
 }
 
-/// A type of parameters, fields and results.
+/// A Rust type of parameters, fields or results, and its description in C.
 pub(crate) trait CType {
     /// Type of the value, or of the items that it points to.
     const BASE: &'static str;
@@ -190,7 +190,7 @@ macro_rules! api {
             docs: &[$($doc),+],
         }),+];
 
-        /// For each function, a call whose arguments are drawn from the input of a `Caller`.
+        /// For each function, a closure that draws the arguments from the input of a `Caller` and calls the function.
         #[cfg(any(test, feature = "fuzzing"))]
         pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
             $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*

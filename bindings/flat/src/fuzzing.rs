@@ -7,12 +7,12 @@ use crate::status::Status;
 
 pub(crate) type DrawnCall = fn(&mut Caller<'_>);
 
-/// Number of items in a buffer.
+/// Number of items in a buffer, unless the items are bytes.
 const ITEMS: usize = 64;
 /// Number of bytes in a buffer of bytes.
 const BYTES: usize = 4096;
 
-/// Number of handles of objects that a `Caller` remembers, and number of ids of bodies, shapes and joints.
+/// A `Caller` remembers at most this many handles of objects, and as many ids of bodies, shapes and joints.
 const REMEMBERED: usize = 12;
 
 /// Names of parameters that are handles. A `Caller` passes a handle from an output mostly to parameters that have the
@@ -54,8 +54,8 @@ pub struct Caller<'a> {
     codes: Vec<i32>,
 }
 
-/// Calls functions as long as there is input. Returns their codes, and the lower halves of the worlds' hashes at the
-/// end.
+/// Calls functions until the input is used up. Returns the status codes of the calls, and the lower halves of the
+/// hashes that the worlds have at the end.
 ///
 /// # Panics
 /// If a call returns the code of an internal error.
@@ -123,7 +123,7 @@ impl Caller<'_> {
         known.get(index % known.len().max(1)).copied().unwrap_or(0)
     }
 
-    /// A number with 32 fraction bits: a few metres, or any value.
+    /// Draws a number with 32 fraction bits: a multiple of 1/16 from about -8 to 8, or rarely an extreme or any value.
     fn number(&mut self) -> u64 {
         match self.byte() {
             0 => self.word(),
@@ -139,9 +139,9 @@ impl Caller<'_> {
         known.unwrap_or_else(|| self.word())
     }
 
-    /// Draws memory for items of `item` bytes, filled with zeros or with an earlier output. Changes up to three words
-    /// of an input. Returns the address, and the number of bytes to add to it: 1 for a misaligned pointer. Returns
-    /// `None` for a null pointer.
+    /// Draws memory for a parameter that points to items of `item` bytes. The memory is filled with zeros or with an
+    /// earlier output; if the parameter is an input, up to three words are then changed. Returns the address and an
+    /// offset to add to it: 1 byte to make the pointer misaligned, otherwise 0. `None` stands for a null pointer.
     fn buffer(&mut self, name: &str, item: usize, is_output: bool) -> Option<(*mut u64, usize)> {
         self.items = if item == 1 { BYTES } else { ITEMS };
         let kind = self.byte();
@@ -152,7 +152,8 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // Changes only words of about the first two items, because most calls read no more.
+                // Changes only words of the first two items (or of the first 64 bytes, if the items are small), because
+                // most calls read no more.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;

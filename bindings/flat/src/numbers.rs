@@ -13,11 +13,12 @@ aliases! {
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// Handle of a body of a world. It is valid until the body is despawned, or until a state from before its spawn is
-    /// restored. After such a rollback, another body may get the same handle, so a table of sprites should also compare
-    /// `user_data`. The lowest 21 bits are the slot. The other bits are the generation, which counts the earlier bodies
-    /// in that slot: the first bodies have the handles 0, 1, 2 and so on. Handles of bodies are less than 2^53, so that
-    /// a JavaScript number holds them exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger.
+    /// Handle of a body of a world. It is valid until the body is despawned, or until a rollback to a state from before
+    /// the spawn of the body. After such a rollback, another body may get the same handle, so a table of sprites should
+    /// also compare `user_data`. The lowest 21 bits are the slot. The other bits are the generation, which counts the
+    /// earlier bodies in that slot: the first bodies have the handles 0, 1, 2 and so on. Handles of bodies are less
+    /// than 2^53, so that a JavaScript number holds them exactly. Only `LS2D_NO_ID`, which refers to nothing, is
+    /// larger.
     RawBody(u64) = "ls2d_body";
     /// Handle of a shape of a world, encoded like `ls2d_body`.
     RawShape(u64) = "ls2d_shape";
@@ -132,7 +133,8 @@ fn unpack(packed: u64) -> Option<[u8; 8]> {
 macro_rules! identifiers {
     ($($raw:ident, $id:ident, $status:ident, $what:literal;)+) => {
         $(impl $raw {
-            /// For a number that is not a handle, returns the error of a stale handle.
+            /// Converts the number to a handle. A number that is not the encoding of a handle gives the same error as a
+            /// stale handle.
             pub(crate) fn id(self) -> Outcome<$id> {
                 let stale = || Failure::new(Status::$status, concat!($what, " does not exist"));
                 let bytes = unpack(self.0).ok_or_else(stale)?;

@@ -51,8 +51,8 @@ statuses! {
     Internal = 11, "LS2D_INTERNAL";
     /// An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed.
     Broken = 12, "LS2D_BROKEN";
-    /// There are too many objects at a time, or the process has used up its supply of about 4 290 000 000 handles.
-    /// `ls2d_world_save_into` saves a world without a new handle.
+    /// There are already 2^20 objects, or the process has used all of about 4 290 000 000 handles. To save a world
+    /// without a new handle, use `ls2d_world_save_into`.
     Exhausted = 13, "LS2D_EXHAUSTED";
     /// The bytes are not a valid encoding of the expected value.
     Decode = 14, "LS2D_DECODE";

@@ -176,7 +176,7 @@ pub(crate) fn with_two<A: Kind, B: Kind, R>(
             "two objects are expected, and both handles are the same",
         ));
     }
-    // The order of the locks prevents deadlocks.
+    // Both objects are locked in the order of their handles, so that two threads cannot wait for each other.
     let (mut first, mut second);
     let (lock_a, lock_b) = if a < b {
         first = lock(&object_a)?;

@@ -1,5 +1,5 @@
-//! While the table of objects is full, nothing is lost: the same call succeeds when an object has been freed. The test
-//! has a process of its own, because it fills the table.
+//! A call that fails because the table of objects is full loses no data: when an object has been freed, the repeated
+//! call succeeds. The tests run in a process of their own, because they fill the table.
 #![cfg(feature = "lockstep")]
 #![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
@@ -51,7 +51,7 @@ fn takes(recorder: u32, recording: u32) -> [Take; 4] {
     ]
 }
 
-/// Opens a match (without a contact) or joins it.
+/// Opens a match if `contact` is `None`; otherwise joins the match of the contact.
 fn enter(peer: u32, contact: Option<u8>) -> u32 {
     let mut config = RawMatchConfig {
         size: 0,

@@ -1,4 +1,4 @@
-// Heaps of one shape between walls, and ragdolls. Numbers are decimal text.
+// Scenes: heaps, each of one kind of shape, between walls, and ragdolls. Numbers are decimal text.
 
 function* heap(count) {
     for (let index = 0; index < count; index++) {
@@ -21,7 +21,7 @@ const SHAPES = {
     },
 };
 
-/** Chains of four capsules, joined by hinges. */
+/** Ragdolls: chains of four capsules, joined by hinges. */
 function ragdolls(count) {
     const bodies = [];
     const hinges = [];

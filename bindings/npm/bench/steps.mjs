@@ -3,9 +3,10 @@
 //     npm ci && node steps.mjs             this package, rapier2d, planck, matter-js
 //     node steps.mjs A.wasm B.wasm ...     builds of the module
 //
-// In each round, every engine or build runs in a new process. For each tick, the shortest time over the rounds counts,
-// because load on the machine makes ticks longer. Figures are means over the ticks, and in brackets the ratio to the
-// first column. ROUNDS is 5 by default. The hashes of a scene have to be equal in all rounds and builds.
+// In each round, every engine or build runs in a new process. The time of a tick is its shortest time over the rounds,
+// because load on the machine makes ticks longer. A printed figure is the mean of these times over the ticks, with the
+// ratio to the first column in brackets. ROUNDS is 5 by default. The hashes of a scene have to be equal in all rounds
+// and builds.
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 import { ENGINES, measure, moduleOf } from "./engines.mjs";

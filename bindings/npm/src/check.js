@@ -7,7 +7,7 @@ export function fail(message) {
     throw new Lockstep2dError("VALUE", message);
 }
 
-/** Throws if an argument is missing: `write` would skip the field, and the library would read old memory or a
+/** Throws if an argument is missing. Otherwise `write` would skip its field, and the library would read old memory or a
  * default. */
 export const given = (value, what) => (value === undefined ? fail(`${what} is missing`) : value);
 
@@ -39,7 +39,7 @@ export const count = (value, what) => Number(integer(value, what, 0, U32_MAX));
 
 export const long = (value, what) => BigInt(integer(value, what, 0, 0xffffffffffffffffn));
 
-/** A time in milliseconds, as whole microseconds. */
+/** Converts a time in milliseconds to whole microseconds, rounded down. */
 export function micros(milliseconds, what) {
     if (typeof milliseconds !== "number" || !(milliseconds >= 0 && milliseconds < Number.MAX_SAFE_INTEGER / 1000)) {
         fail(`${what} is a number of milliseconds from 0, and not ${shown(milliseconds)}`);

@@ -37,7 +37,7 @@ function lookup(table, name, what) {
 
 const optionalLookup = (table, name, what) => (name === undefined ? undefined : lookup(table, name, what));
 
-/** Bits of the options that are true, and bits of the options that are false. */
+/** Returns two masks: the bits of the options that are true, and the bits of the options that are false. */
 function bitsOfFlags(options, bits) {
     let [set, cleared] = [0, 0];
     for (const [name, bit] of Object.entries(bits)) {
@@ -192,8 +192,8 @@ function writeMass(at, options) {
     write("body_def", at, { mass, massCentre: centre, massGyration: gyration });
 }
 
-/** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address of `room`
- * bytes after them. */
+/** Writes a body and its shapes into memory. Returns the addresses of the body and of the shapes, the number of shapes,
+ * and the address of `room` free bytes after the shapes. */
 export function writeBodyAndShapes(options, room = 0) {
     const shapes = expand(onlyKnown(options, BODY_OPTIONS, "a body").shapes ?? []);
     const [body, each] = [sizeOf("body_def"), sizeOf("shape_def")];
@@ -250,7 +250,8 @@ function checkJoint(options, known) {
     }
 }
 
-/** Writes a joint. With `isPlaced`, the length of a pulley follows from the poses of its bodies. */
+/** Writes a joint. With `isPlaced`, a pulley needs no `length`, because the length follows from the poses of the
+ * bodies. */
 export function writeJoint(at, options, isPlaced = false) {
     const [kind, ...known] = lookup(JOINTS, object(options, "a joint").type, "the type of a joint");
     checkJoint(options, known);

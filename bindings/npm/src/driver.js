@@ -4,8 +4,8 @@ import { Lockstep2dError } from "./error.js";
 import { disposable } from "./library.js";
 import { Match } from "./match.js";
 
-// Largest step back of the time in milliseconds that is no error. Within a task, the time of a frame or an event may be
-// a little less than `performance.now()`.
+// A time that lies at most this many milliseconds before an earlier time is not an error: the timestamp of a frame or
+// an event may be a little less than an earlier result of `performance.now()`.
 const BACK_MAX = 1000;
 
 export class MatchDriver {
@@ -23,7 +23,7 @@ export class MatchDriver {
     // Largest time passed so far, in milliseconds.
     #latest = 0;
     #isDisposed = false;
-    // Whether this peer requests a pause, and the other peers that request one.
+    // `#pauses`: whether this peer requests a pause. `#pausing`: the other peers that request one.
     #pauses = false;
     #pausing = new Set();
 
@@ -52,14 +52,15 @@ export class MatchDriver {
     }
 
     get isPaused() {
-        // Requests no longer count when all inputs are final: a player may have closed its page during a pause.
+        // Once all inputs are final, requests for a pause no longer count. Otherwise a player who closes the page
+        // during a pause would keep the other players from playing the last ticks.
         return !this.#isFinished && ((this.#pauses && this.#mayHaveSeat()) || this.#pausing.size > 0);
     }
 
     pause(paused) {
         this.#check();
         this.#pauses = flag(given(paused, "`paused`"), "`paused`");
-        // A peer that joins passes its request when the state arrives.
+        // A peer that is still joining passes its request when it has received the state.
         if (this.#match.status !== "connecting") {
             this.#match.pause(paused);
         }
@@ -108,7 +109,8 @@ export class MatchDriver {
         }
     }
 
-    // Checks a time before it is passed to the match, whose time never decreases.
+    // Checks a time before it is passed to the match. A time that is only a little earlier than before is not an error:
+    // the time of the match never decreases.
     #time(now) {
         micros(now, "the time");
         if (now < this.#latest - BACK_MAX) {
@@ -138,8 +140,8 @@ export class MatchDriver {
         return missing;
     }
 
-    // Plays the ticks that are due. Returns an error that concerns the inputs instead of throwing it: no inputs were
-    // issued, so the match can continue with the next inputs.
+    // Plays the ticks that are due. Returns errors of `readInputs` and of wrong inputs instead of throwing them: no
+    // inputs were issued, so the match can continue with the next inputs.
     #play(now, readInputs) {
         while (!this.isPaused && this.#match.isDue(now)) {
             const { seats, inputBytes } = this.#match;
@@ -165,7 +167,8 @@ export class MatchDriver {
         return undefined;
     }
 
-    // `send` of a data channel throws if the other page is gone. The packet then counts as lost in the network.
+    // An error of `send` is stored, and the packet counts as lost in the network: `send` of a data channel, for
+    // example, throws if the other page is gone.
     #transmit() {
         for (let sent = this.#match.nextPacket(); sent !== undefined; sent = this.#match.nextPacket()) {
             try {

@@ -8,7 +8,7 @@ const MIN = -(1n << 63n);
 const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
 // Name of the method whose result `console.log` prints in Node, Deno and Bun.
 const INSPECT = Symbol.for("nodejs.util.inspect.custom");
-// Cache of parsed strings: a program parses the same few strings repeatedly.
+// Cache of the numbers parsed from strings, because programs parse the same few strings repeatedly.
 const CACHE = new Map();
 const CACHE_MAX = 4096;
 
@@ -72,7 +72,8 @@ export function rawOf(value, what = "a number") {
     throw new Lockstep2dError("VALUE", `${what} is ${shown(value)}, and not an integer, a decimal text or an Fx`);
 }
 
-// Refuses operators: otherwise `a < b` would compare floats or texts, and `a + b` would concatenate texts.
+// Throws if an operator is applied to an `Fx` or an `Angle`: `a < b` would compare floats or texts, and `a + b` would
+// concatenate texts.
 function primitive(value, hint, what, methods) {
     if (hint === "string") {
         return value.toString();

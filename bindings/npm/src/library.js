@@ -6,7 +6,8 @@ import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
 
 export const NO_ID = 0xffffffffffffffffn;
 const NAMES = Object.fromEntries(Object.entries(STATUS).map(([name, code]) => [code, name]));
-// A module that is valid only if the machine supports SIMD: i8x16.popcnt of a splat.
+// A small wasm module with two SIMD instructions (`i8x16.splat`, `i8x16.popcnt`). It is valid only where SIMD is
+// supported.
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 const DECODER = new TextDecoder();
 const ENCODER = new TextEncoder();
@@ -72,7 +73,8 @@ export function library() {
     return exports;
 }
 
-// When the memory of the module grows, its old buffer is detached, and the views are made again.
+// Returns the memory of the module as bytes. When the memory grows, the old buffer is detached, so both views are made
+// again.
 function memory() {
     if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
         bytes = new Uint8Array(exports.memory.buffer);
@@ -81,7 +83,8 @@ function memory() {
     return bytes;
 }
 
-// Bytes at the start of the library's buffer that only `small` returns.
+// Number of bytes at the start of the library's buffer that are reserved for `small`; `scratch` returns the bytes after
+// them.
 const SMALL = 64;
 // Number of calls of `scratch`.
 let scratches = 0;
@@ -95,7 +98,8 @@ function reserve(size) {
     return address;
 }
 
-/** Address of at least `size` bytes. The next call of `scratch` returns the same memory. */
+/** Address of at least `size` bytes of scratch memory. The next call of `scratch` returns the same memory, so read
+ * results before that call. */
 export function scratch(size) {
     scratches += 1;
     return reserve(SMALL + size) + SMALL;
@@ -221,12 +225,13 @@ const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, shape: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-// For each struct, its fields: name in JavaScript, offset, kind, and for an array the number of items.
+// For each struct, the list of its fields. A field has a name in JavaScript, an offset, a kind, and for an array the
+// number of items.
 const FIELDS = Object.fromEntries(
     Object.entries(STRUCTS).map(([name, { fields }]) => [name, Object.entries(fields).map(([field, rest]) => [camel(field), ...rest])]),
 );
 
-/** Fields of a struct that are options. */
+/** Names of the fields of a struct that callers may set as options. */
 export const optionsOf = (name, without = []) =>
     Object.keys(STRUCTS[name].fields).filter((field) => !["size", "reserved", ...without].includes(field)).map(camel);
 
@@ -275,7 +280,8 @@ export function fieldAt(name, at, field) {
     return at + STRUCTS[name].fields[field][0];
 }
 
-/** Copies bytes into memory after `reserved` bytes. Returns the address of the reserved bytes. */
+/** Reserves `reserved` bytes of scratch memory and copies `data` after them. Returns the address of the reserved
+ * bytes. */
 export function give(data, reserved = 64, what = "the argument") {
     byteArray(data, what);
     const at = scratch(reserved + data.length);
@@ -310,11 +316,12 @@ export function takeBytes(handle) {
 
 export const text = (data) => DECODER.decode(data);
 
-// Number of bytes reserved for the items of a list. It counts bytes, not items: a long list of small items would
-// otherwise make lists of large items reserve much memory, and the memory never shrinks.
+// Size in bytes of the buffer for the items of a list. It grows if a list does not fit. The size is in bytes, not in
+// items: otherwise, after a long list of small items, lists of large items would reserve much memory, which is never
+// given back.
 let room = 4096;
 
-/** Calls `ask`, which writes items of `size` bytes, with larger and larger buffers until the items fit. Returns the
+/** Calls `ask`, which writes items of `size` bytes, repeatedly with a larger buffer until all items fit. Returns the
  * address and the number of the items. `prepare` writes other arguments to the `before` bytes in front of the items. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {

@@ -30,7 +30,7 @@ function identity({ peer, key, secret }) {
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
-/** The default offer: the options that have to be equal for all peers. */
+/** The default offer. It contains the options that have to be equal for all peers. */
 const offerOf = ({ seats, inputBytes, tickRate, patience }) => nativeOffer({ rules: "", seats, inputBytes, tickRate, patience });
 
 export class Match extends Handle {

@@ -10,13 +10,13 @@ const PAUSE_MIN = 250;
 const PAUSE_MAX = 8000;
 // Longest wait for the list of members after a connection was opened, in milliseconds.
 const CONNECT_MAX = 10_000;
-// Time without a frame after which a probe is sent to the relay, in milliseconds.
+// If no frame has arrived for this time in milliseconds, the member sends a probe to the relay.
 const ASK_AFTER = 5000;
-// Time without an answer to the probe after which the connection counts as lost, in milliseconds.
+// If no answer arrives within this time in milliseconds after a probe, the connection counts as lost.
 const LOST_AFTER = 10_000;
 // Interval at which `#watch` runs, in milliseconds.
 const WATCH = 1000;
-// Largest number of bytes that wait to be sent.
+// While more bytes than this wait to be sent, further packets are dropped.
 const BUFFERED_MAX = 512 * 1024;
 // Close codes after which the member does not reconnect: a wrong secret, and a newer connection of the same member.
 const FINAL = [4000, 4003];
@@ -32,11 +32,13 @@ export class Relay {
     #pause = PAUSE_MIN;
     #timer;
     #watcher;
-    // Time of the last frame, and time of the probe if one was sent since then. `#isOverdue` and `#entered`: whether
-    // the answer to the probe is overdue, and whether the relay has sent the list of members.
+    // Time of the last frame.
     #heard;
+    // Time of the probe that was sent since the last frame; undefined if none was sent.
     #asked;
+    // Whether the answer to the probe is overdue.
     #isOverdue = false;
+    // Whether the relay has sent the list of members.
     #entered = false;
     #closed = false;
     #ready;
@@ -110,10 +112,10 @@ export class Relay {
         this.#isOverdue = false;
     }
 
-    // A page cannot send WebSocket pings, and the socket of a dead connection stays open for minutes. The relay returns
-    // datagrams that a member sends to itself, so an empty datagram of this kind serves as a probe. Silence alone does
-    // not mean that the connection is lost, because the page may have been suspended. Only an unanswered probe means a
-    // lost connection.
+    // Detects a dead connection, whose socket would otherwise stay open for minutes. A page cannot send WebSocket
+    // pings. Instead, the member sends an empty datagram to itself as a probe, which the relay returns. Silence alone
+    // does not mean that the connection is lost, because the page may have been suspended. Only an unanswered probe
+    // means a lost connection.
     #watch() {
         if (this.#socket === undefined) {
             return;
@@ -180,7 +182,7 @@ export class Relay {
         this.#retry();
     }
 
-    // A WebSocket that cannot be made, for example for lack of memory, counts as a failed connection.
+    // If the WebSocket cannot be created, for example for lack of memory, this counts as a failed attempt to connect.
     #retry() {
         this.#timer = setTimeout(() => {
             try {

@@ -291,8 +291,8 @@ export class ReplayDriver {
         this.#tick = tick;
     }
 
-    // Checks that the game is at the tick of the replay. The replay moves on with each request, even if the game then
-    // fails or another driver takes the request.
+    // Checks that the game and the replay are at the same tick. They differ if a request moved the replay on, but the
+    // game failed to fulfil it, or another driver took the request.
     #expect(tick) {
         if (this.#tick !== tick) {
             fail(`the replay is at tick ${tick}, and the game at tick ${this.#tick}: ${STRAYED}`);

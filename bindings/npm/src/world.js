@@ -353,7 +353,8 @@ export class World extends Edits {
     }
 }
 
-/** A handle that the constructor of `World` takes over. */
+/** Wraps the handle of an existing world. Passed to the constructor of `World`, which then owns the handle and creates
+ * no world. */
 export class Adopted {
     constructor(handle) {
         this.handle = handle;

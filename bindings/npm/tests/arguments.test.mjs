@@ -56,7 +56,8 @@ test("a query needs its whole place", () => {
     const w = world();
     w.spawn({ position: [5, 5], shapes: [L.circle(1)] });
     for (const call of [
-        // If the second call did not fail, it would read the arguments that the first one left in memory.
+        // In the first two cases, the second call lacks an argument. If it did not fail, it would read the argument
+        // that the first call left in memory.
         () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox([-2, -2])],
         () => [w.overlapBox([4, 4], [6, 6]), w.overlapBox(undefined, [9, 9])],
         () => w.overlapBox(), () => w.overlapShape(L.circle(1)), () => w.castShape(L.circle(1), undefined, [1, 0]),

@@ -1,4 +1,4 @@
-// A driver of a match whose game has no world.
+// Tests of `MatchDriver` with a game that has no world.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";
@@ -16,7 +16,7 @@ test("a wrong time is an error, and the match goes on", () => {
         assert.throws(() => driver.update(wrong, inputs), { code: "VALUE" });
         assert.throws(() => driver.receive(wrong, address(1), new Uint8Array(1)), { code: "VALUE" });
     }
-    // The time of a frame may be a little less than that of a packet.
+    // The timestamp of a frame may be a little less than the time of a packet that was processed before.
     driver.update(5400, inputs);
     for (let now = 5500; now < 6000; now += 10) driver.update(now, inputs);
     assert.ok(driver.tick > tick + 20, `${driver.tick} ticks`);

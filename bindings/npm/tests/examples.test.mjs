@@ -1,4 +1,4 @@
-// The parts of examples/web that need no page.
+// Tests of the parts of examples/web that need no page.
 import assert from "node:assert/strict";
 import { register } from "node:module";
 import { test } from "node:test";
@@ -34,7 +34,8 @@ test("a recording without the first ticks is broken", () => {
     assert.deepEqual([recording.broken, recording.ticks], [true, 0]);
 });
 
-/** A connection that refuses the candidate "wrong", and every candidate before the remote description is set. */
+/** A stand-in for `RTCPeerConnection` that refuses the ICE candidate "wrong", and every candidate before the remote
+ * description is set. */
 class Connection {
     static all = [];
     connectionState = "new";

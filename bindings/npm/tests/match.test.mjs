@@ -270,7 +270,7 @@ test("after the end of a match, a driver joins another one", () => {
     assert.deepEqual([guest.match.status, guest.driver.ended], ["watching", false]);
     const { tick } = guest.driver;
     assert.ok(tick > 60 && Math.abs(tick - other.driver.tick) < 20, `${tick} ticks, and ${other.driver.tick}`);
-    // In some updates the spectator has played all final ticks, but the match has not ended.
+    // After some updates, the spectator has played all final ticks, but `ended` stays false, because the match goes on.
     let isLevel = false;
     for (let i = 0; i < 250; i++) {
         net.run(4);
@@ -297,7 +297,8 @@ test("only a finished match has ended, also once it is closed", () => {
     });
     host.match.endAt(300);
     net.run(16_000);
-    // Some spectators have played all final ticks that they know of, but have not ended: they left the match.
+    // Some spectators have played all final ticks that they know of. They have not ended, because they left before the
+    // match was finished.
     assert.ok(spectators.some(({ driver, match }) => driver.tick === match.ticks().final));
     assert.deepEqual([host.match.status, host.driver.tick, host.driver.ended], ["closed", 300, true]);
     assert.deepEqual(spectators.map(({ driver, match }) => [match.status, driver.ended]), spectators.map(() => ["closed", false]));

@@ -1,4 +1,4 @@
-// The library without free handles, and without memory.
+// Tests what happens when the library has no free handles, or no memory.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -27,8 +27,8 @@ test("without a free handle no replay is opened, and the error has no verdict", 
 
 test("bytes that do not fit into memory are freed", async (t) => {
     const real = library();
-    // A second instance of the JavaScript module on the same wasm instance. Scratch memory of more than 50 000 bytes is
-    // refused, as if memory were full.
+    // `scarce` is a second instance of the JavaScript module on the same wasm instance. It gets no scratch memory of
+    // more than 50 000 bytes, as if the memory were full.
     const exports = { ...real, ls2d_scratch: (size) => (size > 50_000 ? 0 : real.ls2d_scratch(size)) };
     t.mock.method(WebAssembly, "instantiate", async () => ({ instance: { exports } }));
     const scarce = await import("../src/library.js?scarce");

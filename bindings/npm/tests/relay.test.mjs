@@ -6,7 +6,8 @@ import { L } from "./common.mjs";
 const [YOU, OTHER] = ["0102030405060708", "1112131415161718"];
 const bytesOf = (digits) => [...Buffer.from(digits, "hex")];
 
-/** A socket that reports its end only when the test calls `onclose`, like the socket of a dead connection. */
+/** A stand-in for a WebSocket. It reports its end only when the test calls `onclose`, like the socket of a dead
+ * connection. */
 class Socket {
     static all = [];
     readyState = 0;

@@ -159,8 +159,8 @@ test("a game with rules in JavaScript goes to any tick of its replay", () => {
     assert.deepEqual(wrong.sums, states[100].sums);
 });
 
-/** Seeks to a tick, and returns whether the driver has arrived there. Checks that the game is at the driver's tick,
- * even after a failure. */
+/** Seeks to a tick, and returns whether the driver has arrived there. Checks that the game is at the tick of the
+ * driver, even if the seek failed. */
 function arrives(driver, game, tick) {
     let error;
     try {
@@ -225,7 +225,7 @@ test("files are opened and refused, although reading them moves the memory", () 
     for (let attempt = 0; attempt < 20; attempt++) {
         const before = library().memory.buffer;
         assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
-        // The kept timelines use up the free memory.
+        // The timelines are kept, so that the free memory is used up and has to grow.
         kept.push(new L.Timeline(replay));
         assert.equal(kept.at(-1).ticks, 20);
         moved += library().memory.buffer === before ? 0 : 1;

@@ -70,7 +70,7 @@ test("all joints and shapes can be defined", () => {
     const shapes = [L.circle("0.5"), L.capsule([0, 0], [1, 0], "0.2"), L.polygon([[0, 0], [1, 0], [0, 1]], { rounding: "0.05" }),
         L.hull([[0, 0], [0, 1], [1, 0], ["0.1", "0.1"]]), L.box(1, "0.1", { density: 3 })];
     const bodies = shapes.map((shape, index) => world.spawn({ position: [3 * index, 5], name: `b${index}`, shapes: [shape] }));
-    // The anchors suit the positions of the bodies: an error of metres would cause faults.
+    // The anchors fit the positions of the bodies. Position errors of metres would cause faults.
     const kinds = [
         { type: "revolute", anchor: [1, 5], limit: ["-0.5", "0.5"], motor: { speed: 1, max: 10 } },
         { type: "prismatic", anchor: [1, 5], axis: [0, 1], spring: { hertz: 2, dampingRatio: "0.5", target: 0 } },
@@ -265,7 +265,7 @@ test("10 000 worlds that are disposed leak nothing", () => {
             after = memory();
         }
     }
-    // The garbage collector may have freed objects of other tests.
+    // Not `assert.equal`, because the garbage collector may have freed objects of other tests.
     assert.ok(L.objectCount() <= before, `${L.objectCount() - before} objects more`);
     assert.equal(memory(), after, "the memory of the module has grown");
 });

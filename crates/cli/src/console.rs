@@ -1,4 +1,4 @@
-//! [`Console`]: the output of a command. Results go to one stream, messages to the other.
+//! [`Console`]: the output of a command. Results go to the stream `out`, messages to the stream `err`.
 
 use std::fmt;
 use std::io::Write;
@@ -58,7 +58,7 @@ impl Console<'_> {
 /// JSON on one line, with [misleading](is_misleading) characters escaped.
 pub(crate) fn json_text(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value).expect("strings and numbers have a JSON form");
-    // Misleading characters occur only in strings.
+    // Such characters occur only in the strings of the JSON text, where escapes are allowed.
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         if is_misleading(character) {

@@ -29,8 +29,7 @@ impl<'a, G: Game> Context<'a, G> {
         files::read(path, self.limits().file_bytes).map_err(CommandError::read(path))
     }
 
-    /// The scenes of the game. Panics if there are none. In that case the table omits the commands that call this
-    /// function.
+    /// The scenes of the game. Panics if there are none, but the tool then has no command that calls this function.
     pub(crate) fn catalogue(&self) -> &'a dyn Catalogue<G> {
         self.tool.catalogue.as_deref().expect("the command is listed only where there are scenes")
     }

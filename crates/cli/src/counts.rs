@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Counts {
     pub(crate) bodies: usize,
-    /// Number of simulated bodies: neither fixed, disabled nor asleep.
+    /// Number of bodies that a tick simulates: all except fixed, disabled and sleeping bodies.
     pub(crate) awake: usize,
     pub(crate) asleep: usize,
     pub(crate) shapes: usize,

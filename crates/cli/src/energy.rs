@@ -1,4 +1,4 @@
-//! [`Measures`]: the energies of a world, and errors that should stay small.
+//! [`Measures`]: the energies of a world, and two errors of the solver that should stay small.
 //!
 //! The values are floats because they are only drawn. Only correctly rounded operations of IEEE 754 are used, so the
 //! plot is the same on every machine.
@@ -15,7 +15,7 @@ use lockstep2d::world::World;
 pub(crate) struct Measures {
     /// Kinetic energy of all enabled dynamic bodies, in J.
     pub(crate) kinetic: f64,
-    /// Potential energy of these bodies in the world's gravity, in J; 0 at the origin.
+    /// Potential energy of these bodies in the world's gravity, in J. A body at the origin has none.
     pub(crate) potential: f64,
     /// [`World::deepest_overlap`], in metres.
     pub(crate) overlap: f64,

@@ -8,20 +8,22 @@ use std::path::Path;
 use lockstep2d::codec;
 use lockstep2d::lockstep::Game;
 
-/// The extension of replay files in folders.
+/// Extension, without the dot, of the files in a folder that count as replays.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// Reads at most `bytes_max + 1` bytes of a file. If the last of these bytes exists, the file is too large.
+/// Reads at most `bytes_max + 1` bytes of a file. If that many bytes are returned, the file is larger than `bytes_max`.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let expected = file.metadata()?.len();
     read_from(file, expected, bytes_max)
 }
 
-/// Reads at most `bytes_max + 1` bytes of a stream. `expected` is an estimate of its length.
+/// Reads at most `bytes_max + 1` bytes of a stream. `expected` is an estimate of its length in bytes, by which memory
+/// is reserved.
 pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
     let end = bytes_max.saturating_add(1);
-    // The buffer has one byte more, so that the read that finds the end of the file does not double the capacity.
+    // The buffer has one byte more than expected. Without free space, the last read, which finds the end of the file,
+    // would double the capacity.
     let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
     if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {
@@ -31,7 +33,7 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     Ok(bytes)
 }
 
-/// Whether bytes are a save of the game `G`, as `seek` writes it.
+/// Whether bytes are the encoding of a save of the game `G`, as the command `seek` writes it.
 pub(crate) fn is_save<G: Game>(bytes: &[u8]) -> bool {
     codec::decode::<G::Save>(bytes).is_ok_and(|save| codec::encode(&save) == bytes)
 }

@@ -10,7 +10,8 @@ use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 /// Prefix of the hashed bytes, which separates this digest from other uses of BLAKE3.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
-/// The BLAKE3 digest of the engine semantics, rules, setup and inputs of a game, defined in FORMAT.md.
+/// The BLAKE3 digest of the semantics version of the engine, and of the rules, setup and inputs of a game. FORMAT.md
+/// defines it.
 ///
 /// The digest does not depend on block boundaries, checkpoints or the trailer. The digest of an incomplete file is that
 /// of the game up to the last complete block. [`Signatures`](crate::signature::Signatures) has an example.
@@ -21,7 +22,7 @@ impl GameDigest {
     /// Computes the digest of a replay of the game `G`, without simulating it.
     ///
     /// # Errors
-    /// [`Verdict::Malformed`] and [`Verdict::LimitExceeded`] for a file that is damaged or too large, and
+    /// [`Verdict::Malformed`] for a damaged file; [`Verdict::LimitExceeded`] for a file that exceeds a limit;
     /// [`Verdict::Unverifiable`] for a file with another format version, other semantics or other rules.
     pub fn of_replay<G: Game>(replay: &[u8], limits: &Limits) -> Result<Self, Verdict> {
         let reader = Reader::open(replay, limits)?;
@@ -76,7 +77,7 @@ impl fmt::Display for GameDigest {
     }
 }
 
-/// Returns why a program for the game `G` cannot verify these semantics and rules, or `None` if it can.
+/// Returns why a program for the game `G` cannot verify a replay with these semantics and rules, or `None` if it can.
 pub(crate) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: SEMANTICS });
@@ -92,7 +93,8 @@ fn add_run(hasher: &mut Hasher, run: Option<(u64, &[u8])>) {
     }
 }
 
-/// Hashes bytes after their length, so that different sequences of parts never hash the same bytes.
+/// Hashes the length of `bytes`, then `bytes`. Because of the lengths, the hashed data of two different games are never
+/// equal.
 fn add_bytes(hasher: &mut Hasher, bytes: &[u8]) {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     hasher.update(&length.to_le_bytes()).update(bytes);

@@ -67,7 +67,7 @@ pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 pub use walk::{Walk, WalkError};
 
-/// Runs the tools of a game with the arguments of this process. There are no scenes.
+/// Runs the tools of a game, without scenes, with the arguments of this process. Returns the exit code.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

@@ -5,11 +5,11 @@
 //! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. On a file system without hard links, a
 //!   file that another program creates just before [`OutputFile::publish`] can still be replaced.
 //! - If the file system has locks, one process at a time writes a target. The others fail.
-//! - On Unix, only its owner can read a private file.
+//! - On Unix, a private file can be read only by its owner.
 //! - An input that is the temporary file of a killed process is left unchanged.
 //!
-//! A killed process leaves its temporary file. The next writer of the target reuses it, unless the file also has
-//! another name.
+//! A killed process leaves its temporary file. The next writer of the target reuses this file, unless a hard link gives
+//! it a second name.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -40,7 +40,7 @@ pub(crate) struct Overwrite {
 }
 
 impl Overwrite {
-    /// Replaces files that only the tool writes, such as keyframes.
+    /// For files that only the tool writes, such as keyframes: an existing file is replaced.
     pub(crate) const ALWAYS: Overwrite = Overwrite { force: true };
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct OutputFile {
     /// The open file. It is locked, unless the target is written directly or the file system has no locks.
     file: File,
     overwrite: Overwrite,
-    /// The input, locked, if it has the usual name of the temporary file.
+    /// If an input is the file at the usual temporary path, this input. Its lock keeps other writers from the target.
     _input: Option<File>,
 }
 
@@ -125,8 +125,8 @@ impl OutputFile {
     }
 
     /// Makes the file appear under its name, after its bytes have reached the disk. Without `--force`, fails if another
-    /// program has created the target meanwhile. If the target is the standard output, the lines that follow go to the
-    /// message stream.
+    /// program has created the target meanwhile. If the target is the standard output, `console` writes all later lines
+    /// to the message stream.
     pub(crate) fn publish(mut self, console: &mut Console<'_>) -> Result<(), CommandError> {
         let failed = CommandError::write(&self.name);
         let Some(temporary) = &self.temporary else {
@@ -176,7 +176,8 @@ fn unfinished(path: &Path) -> PathBuf {
     path.into()
 }
 
-/// Fails for an existing regular file if `--force` is not set. The standard output may be an existing file.
+/// Fails for an existing regular file if `--force` is not set. A path that names the standard output is allowed, even
+/// if the standard output is such a file.
 pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandError> {
     let exists = || fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
     if !overwrite.force && exists() && standard_output(path).is_none() {
@@ -185,14 +186,14 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
     Ok(())
 }
 
-/// A duplicate of the standard output, if a path such as `/dev/stdout` names it. Opening the path instead would
-/// overwrite a regular file from its start.
+/// A duplicate of the handle of the standard output, if `path` names the same file, as `/dev/stdout` does. If the path
+/// were opened instead, a redirected output would be overwritten from its start.
 #[cfg(unix)]
 fn standard_output(path: &Path) -> Option<File> {
     use std::os::fd::AsFd;
     use std::os::unix::fs::MetadataExt;
     let file = File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
-    // The path is not opened for the comparison, because a pipe could block.
+    // The path is not opened for the comparison, because opening a pipe could block.
     let identity = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
     let is_there = identity(fs::metadata(path).ok()?) == identity(file.metadata().ok()?);
     is_there.then_some(file)
@@ -219,7 +220,7 @@ fn lock(temporary: &Path, name: &Path, inputs: &[&Path], readers: Readers) -> Re
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // Before the lock, the previous writer may have renamed or deleted the file.
+        // Before this process locked the file, the previous writer may have renamed or deleted it.
         if !is_at(&file, temporary) {
             continue;
         }
@@ -259,7 +260,7 @@ fn is_published(file: &File, target: &Path) -> io::Result<bool> {
     Ok(is_at(file, target))
 }
 
-/// Whether `path` still names the open file.
+/// Whether `path` names the open file.
 fn is_at(file: &File, path: &Path) -> bool {
     is_same(file, Handle::from_path(path))
 }

@@ -1,4 +1,4 @@
-//! [`Copy`]: a replay that is recorded again from the beginning of another one, for `fork` and `trim`.
+//! [`Copy`]: plays the beginning of a replay and records it as a new replay, for `fork` and `trim`.
 
 use std::path::Path;
 
@@ -14,13 +14,13 @@ use crate::error::CommandError;
 pub(crate) struct Copy<G: Game> {
     game: G,
     recorder: Recorder<G>,
-    /// Work units so far.
+    /// Work units of the setup and of the ticks so far.
     work: u64,
 }
 
 pub(crate) enum CopyError {
-    /// The replay cannot be played as far as requested. The checkpoint after its first `ticks` ticks is the last that
-    /// agrees.
+    /// The replay cannot be played as far as requested. `ticks` is the tick of the last checkpoint that agrees with the
+    /// replay, or 0 if none does. An error of [`Copy::step`] always has 0.
     Replay { ticks: u64, verdict: Verdict },
     /// The setup or the inputs of the replay cannot be recorded.
     Record(RecordError),
@@ -71,7 +71,7 @@ impl<G: Game> Copy<G> {
         Ok(())
     }
 
-    /// Completes and verifies the replay. Returns its bytes and final hash. `output` is for messages.
+    /// Completes and verifies the replay. Returns its bytes and final hash. `output` is the path for error messages.
     pub(crate) fn finish(self, output: &Path, limits: &Limits) -> Result<(Vec<u8>, StateHash), CommandError> {
         let bytes = self.recorder.finish(&self.game)?;
         match verify::<G>(&bytes, limits) {

@@ -34,7 +34,7 @@ pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 /// assert_eq!(game.world().body_count(), 10);
 /// ```
 pub trait Catalogue<G: Game> {
-    /// All scenes, in the order in which `scenes` lists them.
+    /// All scenes, in the order in which the command `scenes` prints them.
     fn scenes(&self) -> Vec<SceneInfo>;
 
     /// Opens the scene of this name, if there is one. Calls with equal names and seeds must return equal scenes.
@@ -44,7 +44,7 @@ pub trait Catalogue<G: Game> {
 /// The description of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneInfo {
-    /// The name.
+    /// The name, as in [`Catalogue::open`].
     pub name: &'static str,
     /// One-line description.
     pub about: &'static str,
@@ -58,6 +58,6 @@ pub struct Scene<G: Game> {
     pub setup: G::Setup,
     /// The default number of ticks to record.
     pub ticks: u64,
-    /// The inputs of the players.
+    /// Returns the inputs of the players for each tick.
     pub script: Script<G>,
 }

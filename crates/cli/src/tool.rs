@@ -52,8 +52,8 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The commands that every game has: `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`,
-    /// `fork`, `trim`, `stats`, `export`, `keygen` and `sign`.
+    /// Creates the tools with the commands that every game has: `verify`, `diff`, `bisect`, `trace`, `stress-saves`,
+    /// `inspect`, `seek`, `fork`, `trim`, `stats`, `export`, `keygen` and `sign`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }
@@ -72,7 +72,8 @@ impl<G: Game> Tool<G> {
     }
 
     /// Sets the default view in which `export` shows the game's world ([`Game::world`]), instead of [`View::default`].
-    /// Animations use only the aspect ratio of the view's size. Arguments override window, layers and size.
+    /// Animations use only the aspect ratio of the view's size. Arguments of the command override the window, the
+    /// layers and the size of the view.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {
         Tool { view: Some(view), ..self }
@@ -86,7 +87,8 @@ impl<G: Game> Tool<G> {
     }
 
     /// Adds the command `view`, which opens the viewer of the game. Its arguments are those of
-    /// [`Viewer::run`](lockstep2d_viewer::Viewer::run). `viewer` is called when the command runs.
+    /// [`Viewer::run`](lockstep2d_viewer::Viewer::run). `viewer` is called when the command runs. Call
+    /// [`Tool::with_limits`] before this function, so that the limits also apply to the viewer.
     ///
     /// ```no_run
     /// use lockstep2d::lockstep::Sandbox;
@@ -108,7 +110,8 @@ impl<G: Game> Tool<G> {
     /// Runs the command that the arguments of this process select, with colours on terminals.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // The streams are not locked: a game that prints or panics on another thread would wait for the lock forever.
+        // The streams are not locked here: a game that prints or panics on another thread would then wait for the lock
+        // forever.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console =

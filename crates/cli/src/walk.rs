@@ -12,7 +12,8 @@ use crate::files::EXTENSION;
 /// names.
 const NAMES_MAX: usize = 4096;
 
-/// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
+/// Iterator over the replays (`*.replay`) in a folder and its subfolders. They are sorted by path, component by
+/// component.
 ///
 /// Links to folders are not followed, because they may form cycles. Only regular files and links to regular files are
 /// returned, because reading a pipe would block. A file that is created during the walk is returned once or not at all.
@@ -46,7 +47,7 @@ struct Folder {
     names: BTreeMap<OsString, bool>,
     /// The last name that was returned.
     last: Option<OsString>,
-    /// Whether `names` has all remaining entries of the folder.
+    /// Whether `names` has all remaining replays and subfolders of the folder.
     is_listed: bool,
 }
 
@@ -114,7 +115,7 @@ impl Folder {
         Ok(Some((path, is_folder)))
     }
 
-    /// Lists the folder again. Keeps the first `names_max` names after the last returned name.
+    /// Lists the folder, and keeps the first `names_max` names after the last returned name.
     fn list(&mut self, names_max: usize) -> io::Result<()> {
         self.is_listed = true;
         for entry in fs::read_dir(&self.path)? {

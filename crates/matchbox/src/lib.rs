@@ -14,8 +14,8 @@ const CHANNEL: usize = 0;
 
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.
 ///
-/// The channels are unordered and unreliable, as UDP is. A member that connects again has another address. The session
-/// recognises the member by its key.
+/// The channels are unordered and unreliable, as UDP is. A member that connects again gets another address. The session
+/// then recognises the member by its key.
 pub struct Matchbox {
     socket: WebRtcSocket,
     received: VecDeque<(Address, Vec<u8>)>,
@@ -46,7 +46,7 @@ impl Matchbox {
     /// use lockstep2d_matchbox::Matchbox;
     /// use lockstep2d_matchbox::matchbox_socket::{RtcIceServerConfig, WebRtcSocket};
     ///
-    /// // Within a local network, without a STUN server.
+    /// // A local network needs no STUN server.
     /// let ice_server = RtcIceServerConfig { urls: vec![], ..Default::default() };
     /// let matchbox = Matchbox::with_builder(WebRtcSocket::builder("ws://127.0.0.1:3536/room").ice_server(ice_server));
     /// ```
@@ -57,7 +57,8 @@ impl Matchbox {
         Matchbox { socket, received: VecDeque::new(), others: Vec::new(), is_closed: false }
     }
 
-    /// Updates [`Matchbox::others`]. [`Transport::receive`] does this when no received packet is left.
+    /// Updates [`Matchbox::others`]. [`Transport::receive`] also does this, whenever it has returned all packets that
+    /// had arrived.
     pub fn update(&mut self) {
         match self.socket.try_update_peers() {
             Ok(changes) if changes.is_empty() => {}
@@ -78,14 +79,14 @@ impl Matchbox {
         self.socket.id().map(address_of)
     }
 
-    /// Addresses of members with an open channel, ascending.
+    /// Addresses of the other members to which a channel is open, in ascending order.
     #[must_use]
     pub fn others(&self) -> &[Address] {
         &self.others
     }
 
-    /// Whether the connection to the signalling server has failed or ended. To return, this peer has to enter the room
-    /// again.
+    /// Whether the connection to the signalling server has failed or ended. To return to the room, create another
+    /// [`Matchbox`].
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.is_closed
@@ -111,7 +112,7 @@ impl Transport for Matchbox {
     }
 }
 
-/// The address is the id that the signalling server assigned.
+/// The address of a peer is its id, which the signalling server assigned: 16 bytes.
 fn address_of(peer: PeerId) -> Address {
     Address::new(peer.0.as_bytes()).unwrap_or_else(Address::nowhere)
 }

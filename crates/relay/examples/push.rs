@@ -27,7 +27,7 @@ use serde_json::json;
 
 const SEATS: u8 = 4;
 
-/// The game. Its whole state is the world.
+/// The game. Its whole state is the world: `players` never changes.
 struct Push {
     world: World,
     players: Vec<BodyId>,
@@ -49,7 +49,7 @@ fn setup() -> Result<Vec<Command>, WorldError> {
 }
 
 impl Push {
-    /// Commands for the inputs. The bits of an input are left, right and up.
+    /// Commands for the inputs. Bits of an input: 1 pushes to the left, 2 to the right, 4 jumps.
     fn commands(&self, inputs: &[u8]) -> Vec<Command> {
         let command = |(&body, &input): (&BodyId, &u8)| {
             let state = self.world.body(body)?;
@@ -170,7 +170,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     while peer.status() != Some(Status::Closed) {
         peer.update(SystemTime::now().duration_since(UNIX_EPOCH)?.saturating_sub(start))?;
         while peer.is_due() {
-            // The bot moves left and right in turn, and jumps now and then.
+            // The bot changes its direction every 40 ticks, and jumps every 90 ticks.
             let tick = peer.tick();
             let jump = if tick % 90 < 2 { 4 } else { 0 };
             let input = if tick / 40 % 2 == 0 { 1 } else { 2 };

@@ -26,7 +26,7 @@ const PAUSE_MIN: Duration = Duration::from_millis(250);
 const PAUSE_MAX: Duration = Duration::from_secs(8);
 /// Largest frame from the relay in bytes.
 const FRAME_MAX: usize = 64 * 1024;
-/// Close code of the relay: a newer connection of this member has replaced the connection.
+/// Code with which the relay closes a connection when the same member has opened a newer one.
 const REPLACED: u16 = 4003;
 /// Maximum number of bytes that wait to be sent. Further datagrams are dropped.
 const WRITE_MAX: usize = 512 * 1024;
@@ -84,7 +84,10 @@ enum State {
 }
 
 /// A member of a room of a relay. A lost connection is opened again in the background. Datagrams are lost in the
-/// meantime. A connection counts as lost if nothing arrives for 15 s while the program calls [`Transport::receive`].
+/// meantime.
+///
+/// [`Transport::receive`] checks the connection: after 5 s without a frame it sends a ping, and if nothing arrives
+/// within another 10 s, the connection counts as lost. A program that was suspended therefore keeps its connection.
 ///
 /// ```no_run
 /// use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions};
@@ -147,7 +150,7 @@ impl Relay {
         &self.others
     }
 
-    /// Whether there is a connection at the moment.
+    /// Whether there is a connection to the relay at the moment.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         matches!(self.state, State::Open { .. })
@@ -171,8 +174,8 @@ impl Relay {
         }
     }
 
-    /// Connects again in another thread, until an attempt succeeds or this member is dropped. A thread that outlived
-    /// its member could replace the connection of a new member with the same secret.
+    /// Starts a thread that tries to connect again, until an attempt succeeds or this value is dropped. If the thread
+    /// went on after the drop, it could replace the connection of a new [`Relay`] with the same secret.
     fn reconnect(&mut self) {
         let (sender, receiver) = channel();
         let target = self.target.clone();
@@ -187,7 +190,7 @@ impl Relay {
                     return;
                 }
                 if let Ok(opened) = open(&target, is_wanted) {
-                    // This fails if the member was dropped, because the receiver is then gone.
+                    // This fails if the [`Relay`] was dropped, because the receiver is then gone.
                     let _ = sender.send(opened);
                     return;
                 }
@@ -197,7 +200,7 @@ impl Relay {
         self.state = State::Connecting { receiver, wanted };
     }
 
-    /// The connection, if there is one. Takes the new connection if the thread has opened one.
+    /// The connection, if there is one. If the background thread has opened a new connection, takes it.
     fn connection(&mut self) -> Option<(&mut Socket, &mut Silence)> {
         if let State::Connecting { receiver, .. } = &self.state {
             match receiver.try_recv() {
@@ -221,7 +224,7 @@ impl Relay {
         match silence.due(Instant::now()) {
             Due::Nothing => {}
             Due::Ping => {
-                // The next read returns an error of the connection.
+                // An error is ignored here, because the next read also returns it.
                 let _ = socket.send(Message::Ping(tungstenite::Bytes::new()));
             }
             Due::Reconnect => self.reconnect(),
@@ -245,7 +248,8 @@ fn open(target: &Target, is_wanted: impl Fn() -> bool) -> Result<(Socket, Member
         .max_write_buffer_size(WRITE_MAX);
     let opened = client_with_config(&target.url, stream, Some(config));
     let (mut socket, _) = opened.map_err(|error| error.to_string())?;
-    // Once the relay has the secret, this connection replaces an older one of the same member.
+    // When the relay receives the secret, it closes an older connection of the same member, so this is the last moment
+    // to give up.
     if !is_wanted() {
         return Err("no longer wanted".to_owned());
     }

@@ -11,8 +11,8 @@ pub(crate) const SECRET_BYTES: usize = 16;
 /// Address of a member of a room.
 pub(crate) type Member = [u8; ADDRESS_BYTES];
 
-/// A frame: an address and a datagram. A frame to the relay has the address of the receiver. A frame from the relay has
-/// the address of the sender.
+/// Encodes a frame: an address and a datagram. In a frame to the relay, the address is that of the receiver. In a frame
+/// from the relay, it is that of the sender.
 pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ADDRESS_BYTES + datagram.len());
     bytes.extend_from_slice(&member);

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 /// Time without a frame from the relay after which a ping is sent.
 const PING_AFTER: Duration = Duration::from_secs(5);
-/// Time after an unanswered ping at which the connection counts as lost.
+/// If no frame arrives for this time after a ping, the connection counts as lost.
 const LOST_AFTER: Duration = Duration::from_secs(10);
 
-/// The time at which the last frame arrived on a connection.
+/// The times of the last frame and of the last ping on a connection.
 ///
-/// A connection is lost only if a ping remains unanswered. A program that has been suspended therefore keeps its
-/// connection.
+/// A connection counts as lost only if a ping remains unanswered. A program that has been suspended for a long time
+/// therefore sends a ping first, and keeps its connection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Silence {
     heard_at: Instant,
@@ -36,7 +36,7 @@ impl Silence {
         *self = Silence::new(now);
     }
 
-    /// The action that is due. Must be called when all frames that have arrived are read.
+    /// The action that is due. Must be called only after all frames that have arrived were read.
     pub(crate) fn due(&mut self, now: Instant) -> Due {
         match self.pinged_at {
             None if now.saturating_duration_since(self.heard_at) >= PING_AFTER => {

@@ -70,7 +70,7 @@ fn receive(relay: &mut Relay) -> (Address, Vec<u8>) {
     until("a datagram", || relay.receive())
 }
 
-/// Updates the relay until the other members of its room are `others`.
+/// Updates a member until its list of the other members is `others`.
 fn until_others(relay: &mut Relay, others: &[Address]) {
     until("the members", || {
         assert_eq!(relay.receive(), None);
@@ -155,8 +155,8 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
     });
 }
 
-/// The relay closes the replaced connection. Datagrams that are sent in the meantime must not hide this from the
-/// member.
+/// The relay sends a close frame to a member that was replaced. The member must detect this frame, even if it first
+/// sends datagrams on the closed connection.
 #[test]
 fn a_replaced_member_that_sends_does_not_replace_its_successor() {
     let server = Running::start(Limits::default());
@@ -167,7 +167,7 @@ fn a_replaced_member_that_sends_does_not_replace_its_successor() {
         thread::sleep(Duration::from_millis(50));
         old.send(b"hello", &to);
     }
-    // The first pause of a reconnection is 250 ms.
+    // Waits for 1 s, because a member would connect again after 250 ms.
     for _ in 0..500 {
         let _ = (old.receive(), new.receive());
         thread::sleep(STEP);
@@ -190,7 +190,7 @@ fn a_dropped_member_does_not_connect_again() {
     drop(old);
     let server = Running::start_at(address, Limits::default());
     let mut new = server.enter("room", 1);
-    // The first pause of a reconnection is 250 ms, the second one 500 ms.
+    // Waits for 1 s, because the dropped member would connect again after a pause of 250 or 500 ms.
     for _ in 0..500 {
         assert_eq!(new.receive(), None);
         assert!(new.is_open(), "the connection was replaced");
@@ -243,7 +243,7 @@ fn open(address: SocketAddr, path: &str) -> WebSocket<TcpStream> {
     tungstenite::client(format!("ws://{address}/{path}"), stream).unwrap().0
 }
 
-/// Close code, or `None` if the connection ended without one.
+/// Sends frames on a new connection. Returns the close code, or `None` if the connection ended without one.
 fn close_code(address: SocketAddr, path: &str, frames: &[Message]) -> Option<u16> {
     let mut socket = open(address, path);
     for frame in frames {

@@ -53,7 +53,7 @@ impl Camera {
     /// Converts a world point to screen coordinates.
     #[must_use]
     pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
-        // The difference is computed before the conversion to `f32`, whose 24 bits are too few for coordinates.
+        // The difference is computed before the conversion to `f32`, whose 24 bits are too few for world coordinates.
         let x = difference(point.x, self.centre.x) * self.scale;
         let y = difference(point.y, self.centre.y) * self.scale;
         [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]
@@ -90,7 +90,7 @@ impl Camera {
         self.pan([about[0] - now[0], about[1] - now[1]]);
     }
 
-    /// Whether a mark of this size, in pixels, is visible at a screen position.
+    /// Whether a mark that extends `size` pixels around a screen position is visible.
     #[must_use]
     pub fn sees(&self, [x, y]: [f32; 2], size: f32) -> bool {
         let beside =
@@ -98,7 +98,7 @@ impl Camera {
         beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
     }
 
-    /// Whether the bounding box of screen positions is visible, or at most 16 pixels outside of the visible area.
+    /// Whether the bounding box of the points overlaps the visible area, enlarged by 16 pixels on each side.
     #[must_use]
     pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
         let beyond = |axis: usize| {
@@ -111,9 +111,9 @@ impl Camera {
         !(points.is_empty() || beyond(0) || beyond(1))
     }
 
-    /// Clips a line to the visible area and 16 pixels around it (Liang and Barsky, "A New Concept and Method for Line
-    /// Clipping", 1984), because coordinates further away may be too large for a rasteriser. Returns `None` if the line
-    /// lies outside.
+    /// Clips a line to the visible area, enlarged by 16 pixels on each side (Liang and Barsky, "A New Concept and
+    /// Method for Line Clipping", 1984), because coordinates further away may be too large for a rasteriser. Returns
+    /// `None` if the line lies outside.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {

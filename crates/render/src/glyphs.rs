@@ -20,7 +20,7 @@ const _: () = assert!(GLYPH_WIDTH as f32 == CELL_WIDTH && GLYPH_HEIGHT as f32 ==
 /// Coverage of each pixel of a glyph, from 0 to 255, in rows from top to bottom.
 pub type Glyph = [[u8; GLYPH_WIDTH]; GLYPH_HEIGHT];
 
-/// Glyph of a character.
+/// Returns the glyph of a character: that of a similar one if the font lacks the character, or else a hollow box.
 #[must_use]
 pub fn glyph(character: char) -> Glyph {
     let Some(raster) = get_raster(nearest(character), WEIGHT, SIZE) else { return MISSING };

@@ -35,7 +35,7 @@ pub struct Item {
     pub closed: bool,
 }
 
-/// Line of text, in cells of [`CELL_WIDTH`](crate::CELL_WIDTH).
+/// Line of text. At scale 1, each character takes [`CELL_WIDTH`](crate::CELL_WIDTH) pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// Number of items drawn before the text.

@@ -24,8 +24,8 @@ const HASH: usize = 34;
 /// Typical number of characters of a style's name.
 const NAME: usize = 12;
 
-/// Draws a world like `lockstep2d::draw::svg`: its visible part, and a scale bar. Above them is the legend, wrapped to
-/// the width.
+/// Draws a world like `lockstep2d::draw::svg`: its visible part, and a scale bar. The legend is above them; its lines
+/// are wrapped to the width of the picture.
 pub fn page(list: &mut DrawList, world: &World, view: &View) {
     let size = [view.width.clamp(64, 16384) as f32, view.height.clamp(64, 16384) as f32];
     let window = match view.frame {
@@ -53,7 +53,8 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
     add_legend(list, &Legend::of(world, styles), &view.title, size[0]);
 }
 
-/// Height of the legend. It is computed from typical lengths, so that it is equal in all frames of an animation.
+/// Height of the legend, in pixels. It is computed from typical lengths of the texts, so that it is equal in all frames
+/// of an animation.
 fn height_of_legend(view: &View, width: f32) -> f32 {
     let columns = ((width - 2.0 * MARGIN) / CELL_WIDTH).max(1.0) as usize;
     let title = view.title.chars().count().next_multiple_of(8);
@@ -102,7 +103,7 @@ impl Pen {
     }
 }
 
-/// A scale bar of up to a quarter of the width, in the lower left corner.
+/// Adds a scale bar of up to a quarter of the picture's width, in the lower left corner.
 fn add_bar(list: &mut DrawList, camera: &Camera, [width, height]: [f32; 2]) {
     let Some(Bar { length, label }) = Bar::up_to(|length| camera.length(length) <= width / 4.0) else {
         return;

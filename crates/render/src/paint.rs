@@ -19,7 +19,7 @@ const SCALE_MIN: f32 = 1.0 / 6.0;
 /// Mean half size of shapes, in pixels, below which labels are left out, because they would overlap.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
-/// Corners of a point mark, which looks like a disc.
+/// Corners of a point mark of radius 1, which looks like a disc.
 const OCTAGON: [[f32; 2]; 8] = {
     let (far, near) = (0.923_879_5, 0.382_683_43);
     [
@@ -58,9 +58,9 @@ const TINY: f32 = 1.5;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
-    /// Scale of marks and line widths, from 1/6 to 1. It is smaller for small bodies.
+    /// Scale of marks and line widths. [`Brush::suiting`] makes it smaller for smaller bodies, from 1 down to 1/6.
     pub marks: f32,
-    /// Colour that replaces all others, to draw a world over another one.
+    /// Colour that replaces the colours of all styles, to draw a world over another one.
     pub tint: Option<Colour>,
 }
 
@@ -171,7 +171,8 @@ impl Look {
     fn of(style: Style, brush: &Brush) -> Self {
         let Paint { stroke, fill, width, .. } = style.paint();
         let width = f32::from(width) / 100.0;
-        // Small bodies have thin lines. The outlines of fixed shapes stay visible.
+        // A small scale makes lines thinner, but not thinner than 0.4 pixels. For outlines of fixed shapes, this limit
+        // is 1 pixel.
         let width_min = if style == Style::Fixed { 1.0 } else { 0.4 };
         let width = (width * brush.marks).max(width.min(width_min));
         let fill = fill.map_or(Colour::NONE, |Fill { colour, opacity }| {
@@ -212,8 +213,8 @@ fn disc([x, y]: [f32; 2], radius: f32, sides: u32) -> impl Iterator<Item = [f32;
     })
 }
 
-/// Number of sides of a circle that looks round. Up to a radius of 1000 pixels, the sides are at most a third of a
-/// pixel away from the circle.
+/// Number of sides of a polygon that looks like a circle. `radius` is in pixels. Up to a radius of 1000 pixels, the
+/// sides are at most a third of a pixel away from the circle.
 fn sides_of(radius: f32) -> u32 {
     (radius.max(0.0).sqrt() * 4.5).clamp(8.0, 128.0) as u32
 }
@@ -223,7 +224,7 @@ fn rounded(vertices: &[Vec2<Fx>], radius: Fx, camera: &Camera) -> Vec<[f32; 2]> 
     let radius = camera.length(radius);
     let corners: Vec<[f32; 2]> = vertices.iter().map(|&vertex| camera.place(vertex)).collect();
     let count = corners.len();
-    // Here y points up, so that a counter-clockwise polygon stays counter-clockwise.
+    // Angles are measured with y up, as in the world, so that a counter-clockwise polygon stays counter-clockwise.
     let direction = |from: [f32; 2], to: [f32; 2]| (from[1] - to[1]).atan2(to[0] - from[0]);
     let sides = sides_of(radius) as f32;
     let mut outline = Vec::new();

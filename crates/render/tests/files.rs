@@ -210,7 +210,7 @@ fn what_is_no_animation_is_refused() {
     assert!(Animation::apng(Vec::new(), THIRTY, 0).finish().is_err());
 }
 
-/// A writer that fails as on a full disk, after this number of bytes.
+/// A writer that fails, as on a full disk, when more than this number of bytes would be written.
 struct Full(usize);
 
 impl std::io::Write for Full {

@@ -21,7 +21,7 @@ fn played(name: &str, ticks: u64) -> Sandbox {
     game
 }
 
-/// Whether a colour is the blend of two others. The tolerance is 2 per channel.
+/// Whether `found` is the colour `above`, blended by its opacity over `below`. The tolerance is 2 per channel.
 fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     let share = f32::from(above.opacity) / 255.0;
     (0..3).all(|channel| {
@@ -141,7 +141,7 @@ fn a_page_shows_the_same_below_its_legend() {
     for word in ["pyramid", "tick 60 ", "deepest overlap", &hash, "fixed", "asleep"] {
         assert!(words.contains(word), "{word:?} should be in {words:?}");
     }
-    // The scale bar is left out here, because it lies on the picture.
+    // The scale bar is left out here, because it covers pixels that are compared.
     let mut bare = DrawList::default();
     for item in list.items().iter().filter(|item| item.stroke != Colour::hex(0x222222)) {
         bare.polygon(list.points(item).to_vec(), item.fill, item.stroke, item.width);
@@ -151,7 +151,7 @@ fn a_page_shows_the_same_below_its_legend() {
     assert!(outside > 1000 && inside > 100, "checked only {outside} pixels outside and {inside} inside");
 }
 
-/// The shapes of this world are so wide that they could overflow the rasteriser.
+/// At the scale of this window, the shapes of the world are so wide in pixels that they could overflow the rasteriser.
 #[test]
 fn a_narrow_window_of_a_wide_world_is_drawn() {
     let game = played("box_stack", 1);

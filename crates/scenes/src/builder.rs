@@ -106,7 +106,7 @@ impl Builder {
     }
 }
 
-/// Builds a scene of this crate. Panics if the world refuses a command, because all scenes are valid.
+/// Builds a scene of this crate. Panics if the world refuses a command, because this is a mistake in the scene.
 pub(super) fn build(
     config: Config,
     fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,

@@ -45,7 +45,7 @@ fn pill() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(0), fx!(-0.4)), Vec2::new(fx!(0), fx!(0.4)), fx!(0.3))?)
 }
 
-/// Horizontal speeds in m/s, each with the tick from which it applies.
+/// Pairs of a tick and the horizontal speed in m/s from this tick on.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(-8)), (120, fx!(3)), (300, fx!(6)), (600, fx!(-6)), (880, fx!(0))];
 
@@ -71,7 +71,8 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(store_state(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// Lowest bit of the body's user data: whether the character is on ground. The other bits hold its upward speed.
+/// Lowest bit of the body's user data: whether the character is on ground. The other bits hold the character's upward
+/// speed.
 const ON_GROUND: u64 = 1;
 
 /// Reads the state of the character from the body and its user data.

@@ -34,8 +34,8 @@ pub(super) const DRUM: Scene =
     })
     .golden(300);
 
-/// Shapes of the drum: a ring of 36 plates with radii from 10 to 11 m, which overlap by one degree, and 4 paddles
-/// inside.
+/// Shapes of the drum: a ring of 36 plates, and 4 paddles inside. The inner radius of the ring is 10 m, the outer
+/// radius 11 m. Neighbouring plates overlap by one degree.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {
@@ -48,7 +48,7 @@ fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     Ok(shapes)
 }
 
-/// A ring segment with straight sides, between two angles in degrees and two radii.
+/// A ring segment with straight sides, between two angles in degrees and two radii in metres.
 pub(super) fn plate(degrees: (Fx, Fx), radii: (Fx, Fx)) -> Result<ShapeDef, WorldError> {
     let corner = |degrees: Fx, radius: Fx| {
         Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
@@ -72,8 +72,8 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6 ticks, a body is spawned. Every 6 ticks, another body is despawned if there are at least 40 dynamic bodies.
-/// Every 50 ticks, the first dynamic body is kicked.
+/// Every 6 ticks, a body is spawned. Three ticks after each of these ticks, one of the first 40 dynamic bodies is
+/// despawned, if there are at least 40. Every 50 ticks, the first dynamic body is kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();

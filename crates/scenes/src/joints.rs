@@ -90,8 +90,8 @@ fn pin(a: BodyId, b: BodyId) -> JointDef {
     JointDef::new(a, b, Revolute::new())
 }
 
-/// Adds a row of pieces of 1 m, which begins at `x`. The first piece is pinned to the origin of `start`. Returns the
-/// last piece.
+/// Adds a horizontal row of `count` pieces, each 1 m long, from `x` to the right. Hinges connect neighbouring pieces,
+/// and the first piece with the origin of `start`. Returns the last piece.
 fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;

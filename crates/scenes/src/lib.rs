@@ -50,7 +50,7 @@ pub struct Scene {
     pub about: &'static str,
     /// Length in ticks.
     pub ticks: u64,
-    /// Length of its golden replay in ticks.
+    /// Length in ticks of the scene's golden replay.
     pub golden_ticks: u64,
     setup: fn(seed: u64) -> SandboxSetup,
     script: fn(tick: u64, game: &Sandbox) -> Vec<Command>,
@@ -76,7 +76,7 @@ impl Scene {
         ALL.iter().find(|scene| scene.name == name)
     }
 
-    /// The setup. The seed matters only for random scenes.
+    /// The setup. The seed has an effect only on random scenes.
     #[must_use]
     pub fn setup(&self, seed: u64) -> SandboxSetup {
         (self.setup)(seed)

@@ -12,7 +12,7 @@ use lockstep2d::math::{Angle, Fx, Rot, Vec2};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::Config;
 
-/// 25 degrees per second, in rad/s.
+/// Angular velocity of the tumbler and the washer: 25 degrees per second, in rad/s.
 const TURNING: Fx = fx!(0.436332312999);
 
 pub(super) const SPINNER: Scene = Scene::new(
@@ -93,8 +93,8 @@ pub(super) const WASHER: Scene =
     })
     .golden(20);
 
-/// Shapes of the washer: a ring of 36 plates with radii from 16 to 18 m, which overlap by two degrees, and 4 paddles
-/// inside.
+/// Shapes of the washer: a ring of 36 plates, and 4 paddles inside. The inner radius of the ring is 16 m, the outer
+/// radius 18 m. Neighbouring plates overlap by two degrees.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

@@ -55,9 +55,9 @@ fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Centres of the unit boxes of a pyramid. Row `i`, counted from the bottom, has the boxes `j` from `i` to `base - 1`.
-/// The centres are at `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2` relative to `left`, the left end of the lowest
-/// row.
+/// Centres of the unit boxes of a pyramid. Row `i`, counted from 0 at the bottom, has the boxes `j` from `i` to
+/// `base - 1`. The centres are at `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2` relative to `left`, the left end of
+/// the lowest row.
 fn pyramid_places(left: Vec2<Fx>, base: i32) -> impl Iterator<Item = Vec2<Fx>> {
     let place = move |i: i32, j: i32| {
         left + Vec2::new(Fx::from_num(i + 1) / 2 + Fx::from_num(j - i), Fx::from_num(2 * i + 1) / 2)
@@ -115,7 +115,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
             })
             .collect();
         let rounding = if rng.below(3) == 0 { rng.range(fx!(0.02), fx!(0.1)) } else { Fx::ZERO };
-        // Rejects thin polygons, which are hard to see. The loop then generates another polygon.
+        // Rejects polygons that are at most 0.3 m wide, which are hard to see. The loop then generates another polygon.
         let wide_enough = |polygon: &Polygon| {
             polygon.vertices().iter().zip(polygon.normals()).all(|(&vertex, &normal)| {
                 let depth = |other: &Vec2<lockstep2d::math::Length>| -> lockstep2d::math::Length {

@@ -21,14 +21,14 @@ pub(super) struct Bone {
     /// Index of the parent bone.
     pub(super) parent: usize,
     height: Fx,
-    /// Ends of the capsule's segment, relative to `height`.
+    /// Heights of the ends of the capsule's segment, relative to `height`.
     ends: (Fx, Fx),
     radius: Fx,
     /// Height of the hinge.
     pivot: Fx,
     /// Limits of the hinge in units of pi.
     limit: (Fx, Fx),
-    /// Factor of the maximum friction torque.
+    /// Maximum friction torque of the hinge, in units of 0.05 N m.
     strength: Fx,
     extra: Extra,
 }
@@ -37,9 +37,9 @@ enum Extra {
     None,
     /// Bone with linear damping.
     Damped,
-    /// Foot: has an additional shape with little friction, which collides only with the ground.
+    /// Lower leg: has a foot, an additional shape with little friction that collides only with the ground.
     Foot,
-    /// Bone with linear damping. The angle of its hinge is 0 when the hinge is bent by an eighth of a turn.
+    /// Bone with linear damping. Its hinge is bent by an eighth of a turn when the angle of the hinge is 0.
     Bent,
 }
 
@@ -123,7 +123,8 @@ impl Bone {
         place + Vec2::new(fx!(0), self.height)
     }
 
-    /// Shapes of the bone. Shapes of the same ragdoll do not collide with each other.
+    /// Shapes of the bone. `ragdoll` is the number of the ragdoll, at least 1. Shapes of the same ragdoll do not
+    /// collide with each other.
     pub(super) fn shapes(&self, ragdoll: i32) -> Result<Vec<ShapeDef>, WorldError> {
         let filter = Filter { category: RAGDOLL_CATEGORY, mask: GROUND | RAGDOLL_CATEGORY, group: -ragdoll };
         let (low, high) = (Vec2::new(fx!(0), self.ends.0), Vec2::new(fx!(0), self.ends.1));

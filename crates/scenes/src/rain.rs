@@ -12,7 +12,7 @@ use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{BodyPose, Command, Config};
 
-/// Number of columns that exist at a time. The ragdolls of a column are above each other, on all floors.
+/// Maximum number of columns. A column has [`GROUP`] ragdolls side by side above each floor.
 const COLUMNS: u64 = 40;
 const FLOORS: u32 = 5;
 /// Number of ragdolls of a column that fall on each floor.
@@ -47,12 +47,13 @@ pub(super) const RAIN: Scene = Scene {
     },
 };
 
-/// Numbers of the ragdolls of a column. Each number belongs to one ragdoll on every floor.
+/// Numbers of the ragdolls of a column. The ragdolls above each other, one on each floor, have the same number.
 const fn ragdolls(column: u32) -> core::ops::Range<u32> {
     column * GROUP..(column + 1) * GROUP
 }
 
-/// User data of a bone: the number of the ragdoll and the index of the bone. The user data of the floor is 0.
+/// User data of a bone: a value of at least 1, from the number of the ragdoll and the index of the bone. The user data
+/// of the floor is 0.
 fn mark(ragdoll: u32, bone: usize) -> u64 {
     u64::from(ragdoll) * BONES.len() as u64 + bone as u64 + 1
 }

@@ -64,22 +64,23 @@ fn lift_at(tick: u64) -> Vec2<Fx> {
     Vec2::new(fx!(17.6), rise - fx!(0.2))
 }
 
-/// Height of the centre of mass above the ground, in metres, at which the leg bears the weight.
+/// Height of the centre of mass above the ground, in metres, at which the force of the leg is equal to the weight.
 const RIDE_HEIGHT: Fx = fx!(0.9);
-/// Maximum length of the leg in metres. A longer leg would exert no force.
+/// Length of the leg, in metres below the centre of mass, within which ground is found. At this height, the spring no
+/// longer pushes.
 const LEG_LENGTH: Fx = fx!(1.1);
-/// Stiffness of the leg, `(2 pi 4 Hz)²`, in 1/s².
+/// Stiffness of the leg per unit of mass, `(2 pi 4 Hz)²`, in 1/s².
 const STIFFNESS: Fx = fx!(632);
-/// Damping of the leg, `2 * 0.7 * 2 pi 4 Hz`, in 1/s.
+/// Damping of the leg per unit of mass, `2 * 0.7 * 2 pi 4 Hz` (a damping ratio of 0.7), in 1/s.
 const DAMPING: Fx = fx!(35);
 /// Largest acceleration that the leg causes, in m/s².
 const PUSH_MAX: Fx = fx!(100);
-/// Largest acceleration along the ground in m/s².
+/// Largest horizontal acceleration in m/s².
 const DRIVE_MAX: Fx = fx!(25);
-/// Upward speed in m/s, relative to the ground. Above it, the leg does not push, because the character is jumping.
+/// Upward speed relative to the ground, in m/s, above which the leg does not push, because the character is jumping.
 const LIFT_OFF: Fx = fx!(2);
 
-/// Horizontal speeds in m/s, relative to the ground, each with the tick from which it applies.
+/// Pairs of a tick and the horizontal speed in m/s, relative to the ground, from this tick on.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(3)), (560, fx!(0)), (730, fx!(3)), (900, fx!(-4)), (1150, fx!(0))];
 

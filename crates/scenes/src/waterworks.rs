@@ -33,8 +33,8 @@ fn water() -> Area {
     Area::fluid(fx!(1)).drag(fx!(2), fx!(2))
 }
 
-/// Adds two pools that touch, with their surfaces at height 0. The right pool has a current to the right, and wind
-/// above it. The basin must be the first body.
+/// Adds two pools that touch, with their surfaces at height 0. The right pool has a current to the right, and a wind to
+/// the left above it. [`play`] expects the basin to be the first body.
 fn basin(scene: &mut Builder) -> Result<BodyId, WorldError> {
     let wall = |x| Ok::<_, WorldError>(rectangle(fx!(0.5), fx!(4))?.offset((x, fx!(-1))));
     let floor = rectangle(fx!(12), fx!(0.5))?.offset((fx!(0), fx!(-4.5)));
@@ -63,7 +63,7 @@ fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
         bodies.push(wheel);
     }
     let mesh = |teeth_a, teeth_b| Gear::new(teeth_a, teeth_b);
-    // The wheels are in mesh, because all angles are 0.
+    // The wheels are in mesh at the start, because all their angles are 0.
     scene.joint(JointDef::new(bodies[0], bodies[1], mesh(10, 20)))?;
     scene.joint(JointDef::new(bodies[1], bodies[2], mesh(20, 10)))?;
     let gate = BodyDef::dynamic().position((fx!(-4.5), fx!(6)));

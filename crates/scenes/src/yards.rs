@@ -25,7 +25,7 @@ pub(super) const SMASH: Scene =
     })
     .golden(90);
 
-/// Positions in columns. The columns go from left to right, and each column from the bottom up.
+/// Positions of a grid, in columns from left to right, and in each column from the bottom up. The first is `origin`.
 pub(super) fn grid(
     columns: i32,
     rows: i32,
@@ -71,7 +71,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Five points on a circle. Each is a turn divided by the golden ratio after the previous point.
+/// Five points on a circle. The angle from each point to the next is a turn divided by the golden ratio.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
     // A turn divided by the golden ratio is pi (sqrt(5) - 1) rad.
     let step = Angle::from_radians(fx!(3.883222077451));

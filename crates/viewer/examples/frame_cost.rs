@@ -1,5 +1,5 @@
 //! Measures the mean CPU time of a frame of the scene `large_pyramid` (5051 bodies), for several sets of layers. The
-//! draw list and its triangles are measured separately.
+//! time to fill the draw list and the time to build its triangles are measured separately.
 //!
 //! ```text
 //! cargo run --release -p lockstep2d-viewer --example frame_cost

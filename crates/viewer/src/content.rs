@@ -1,4 +1,4 @@
-//! [`Content`]: scenes and files that an app can show, without the type of their game.
+//! [`Content`]: the scenes and files that an app can show. Its type does not depend on the type of the game.
 
 use std::rc::Rc;
 
@@ -30,7 +30,7 @@ pub(crate) struct Scene {
 /// Opens a scene. The arguments are the random seed and the limits for its replay.
 pub(crate) type OpenScene = Rc<dyn Fn(u64, &Limits) -> Result<Box<dyn Source>, SourceError>>;
 
-/// Opens a replay of the game. The first argument is the name for display.
+/// Opens a replay of the game. The arguments are the name for display, the bytes of the file, and the limits.
 pub(crate) type OpenReplay = Rc<dyn Fn(&str, &'static [u8], &Limits) -> Result<Box<dyn Source>, Verdict>>;
 
 impl Content {

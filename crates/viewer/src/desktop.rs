@@ -149,7 +149,8 @@ fn trouble(path: &Path, error: &dyn fmt::Display) -> Trouble {
 
 #[cfg(test)]
 mod tests {
-    /// clap checks the arguments only with debug assertions.
+    /// clap reports contradictory definitions of arguments only in builds with debug assertions, so this test checks
+    /// them.
     #[test]
     fn the_arguments_go_together() {
         super::command(&crate::sandbox()).debug_assert();

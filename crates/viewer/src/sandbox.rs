@@ -7,7 +7,7 @@ use crate::live::Live;
 use crate::source::{Source, SourceError};
 use crate::viewer::Viewer;
 
-/// Name of the scene that is shown at first.
+/// Name of the scene that is shown at the start.
 const FIRST: &str = "ragdoll";
 
 /// Returns the viewer of the sandbox: its scenes are live worlds in which the user can act.

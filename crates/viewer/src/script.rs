@@ -6,14 +6,14 @@
 //! |---|---|
 //! | `press KEY`, `release KEY` | presses or releases a key |
 //! | `key KEY` | presses and releases a key |
-//! | `move X Y` | moves the pointer to a position as in [`Event`] |
+//! | `move X Y` | moves the pointer to a position, in the units of [`Event::Moved`] |
 //! | `down BUTTON`, `up BUTTON` | presses or releases a pointer button: `left`, `middle`, `right` |
 //! | `click X Y` | moves the pointer and clicks with the left button |
-//! | `wheel NOTCHES` | turns the wheel, away from the user if positive |
+//! | `wheel NOTCHES` | turns the wheel by this number of notches; positive: away from the user |
 //! | `drop PATH` | drops a file on the window |
 //! | `frames COUNT` | runs this number of frames of 1/60 s each |
 //! | `screenshot PATH` | writes the current picture to a PNG file |
-//! | `report` | prints a line that describes what is shown |
+//! | `report` | prints a line with the name, tick, hash and status of what is shown |
 //! | `quit` | ends the program |
 //!
 //! A key is a character, or `space`, `left`, `right`, `up`, `down`, `home`, `end`, `pageup`, `pagedown`, `enter`,
@@ -28,7 +28,7 @@ use crate::event::{Button, Event, Key};
 /// Duration of a frame in a script: 1/60 s.
 pub const FRAME: Duration = Duration::from_nanos(16_666_667);
 
-/// Maximum number of frames of one instruction: an hour.
+/// Maximum number of frames of a `frames` instruction: one hour at 60 frames a second.
 const FRAMES_MAX: u32 = 216_000;
 
 /// Instructions that replace user input.
@@ -60,7 +60,7 @@ pub enum Step {
     Frames(u32),
     /// Writes a picture to this file.
     Screenshot(String),
-    /// Prints a line that describes what is shown.
+    /// Prints a line with the name, tick, hash and status of what is shown.
     Report,
     /// Ends the program.
     Quit,

@@ -27,8 +27,8 @@ use crate::window;
 /// Viewer::<MyGame>::new().scene("hill", "a car on a hill", |seed| seed).keys(keys).run()
 /// ```
 ///
-/// Without scenes it shows replays, divergence reports and snapshots. Players take the seats of a scene in the order in
-/// which they are added.
+/// A viewer without scenes shows replays, divergence reports and snapshots. In a scene, the players take the seats in
+/// the order in which they were added to the viewer.
 pub struct Viewer<G: Game> {
     pub(crate) name: String,
     pub(crate) about: String,
@@ -91,7 +91,7 @@ impl<G: Game + 'static> Viewer<G> {
     }
 
     /// Adds a scene that can be played. The arguments are its name, its description, and a function that returns its
-    /// setup for a random seed. The first scene is shown at the start, unless [`Viewer::first`] names another.
+    /// setup for a random seed. The viewer starts with the first scene, unless [`Viewer::first`] names another.
     #[must_use]
     pub fn scene(
         mut self,
@@ -115,7 +115,7 @@ impl<G: Game + 'static> Viewer<G> {
         self.limited_source(name, about, move |seed, _| open(seed))
     }
 
-    /// Adds a scene with its own [`Source`], which uses the limits of the viewer.
+    /// Adds a scene with its own [`Source`]. `open` gets the random seed and the limits of the viewer.
     pub(crate) fn limited_source(
         mut self,
         name: impl Into<String>,
@@ -140,7 +140,8 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a bot. `bot` makes it from the scene's random seed and the seat number, which counts from 0.
+    /// Adds a bot. `bot` creates it; its arguments are the scene's random seed and the seat number, which counts from
+    /// 0.
     #[must_use]
     pub fn bot(mut self, bot: impl Fn(u64, usize) -> Bot<G> + 'static) -> Self {
         self.players.push(Player::Bot(Rc::new(bot)));
@@ -176,8 +177,8 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { layers, ..self }
     }
 
-    /// Sets the limits for replays: those that are opened, and those of the scenes with a setup. Network matches are
-    /// recorded without limits.
+    /// Sets the limits for the replays that the viewer opens, and for the recordings of scenes that have a setup.
+    /// Network matches are recorded without limits.
     #[must_use]
     pub fn limits(self, limits: Limits) -> Self {
         Viewer { limits, ..self }
@@ -203,7 +204,7 @@ impl<G: Game + 'static> Viewer<G> {
         return self.run_on_page();
     }
 
-    /// Runs the program with these arguments. The first argument is the program's name.
+    /// Like [`Viewer::run`] on a desktop, with these arguments. The first argument is the program's name.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn run_with<A>(self, arguments: impl IntoIterator<Item = A>) -> ExitCode

@@ -32,7 +32,8 @@ fn press(app: &mut App, key: Key) {
     (0..200).for_each(|_| app.advance(FRAME));
 }
 
-/// Steps forwards, steps back, and goes forwards again from the start. The broad phase is left out, because its tree
+/// Steps forwards, steps back, and goes forwards again from the start. Whenever a tick is shown again, its drawing must
+/// be the same as before. Layers 1 and 5 are on already. Layer 3 is left out, because the tree of the broad phase
 /// depends on how a tick was reached.
 fn goes_back(mut app: App) {
     app.handle(Event::Resized([900.0, 700.0]));

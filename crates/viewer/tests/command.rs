@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 fn viewer(args: &[&str]) -> (Option<i32>, String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d-viewer"));
-    // There is no display, so that no test opens a window.
+    // Without a display, a command that would open a window fails, so no test opens one.
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").args(args);
     let Output { status, stdout, stderr } = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

@@ -68,8 +68,8 @@ fn random_act(rng: &mut Rng, world: &World) -> Act {
     }
 }
 
-/// Plays, acts, seeks and saves at random. Returns the number of times that recorded ticks were dropped and that a body
-/// was held.
+/// Plays, acts, seeks and saves at random. Returns how many of its forward seeks dropped recorded ticks, and after how
+/// many of them a body was held.
 fn play_about(live: &mut Live, seed: u64, ticks: u64) -> (usize, usize) {
     let rng = &mut Rng::new(seed);
     let (mut played, mut cuts, mut held) = (0, 0, 0);

@@ -92,7 +92,8 @@ export class Browser {
         return result.value;
     }
 
-    // Evaluates an expression in the page again and again, until `holds` is true of the value. Returns the value.
+    // Evaluates an expression in the page repeatedly until `holds(value)` is true. Returns the value. Fails after
+    // TIMEOUT.
     async until(expression, holds, what) {
         const end = Date.now() + TIMEOUT;
         let value;
@@ -113,7 +114,8 @@ export class Browser {
         await this.send("Input.dispatchKeyEvent", { type: "keyUp", ...event });
     }
 
-    // Presses, moves or releases the mouse. Chromium captures the pointer only if moves name the button that is down.
+    // Presses, moves or releases the mouse. An event for a move has to name the button that is down, because otherwise
+    // Chromium does not capture the pointer.
     async mouse(type, x, y) {
         if (type !== "mouseMoved") {
             this.#isDown = type === "mousePressed";

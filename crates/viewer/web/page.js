@@ -45,8 +45,9 @@ function show(name, bytes) {
     element("glcanvas").focus();
 }
 
-// Shows files, or compares them with the shown file. The page gets no key events before it has the focus, so a press of
-// Shift is passed on while the file is opened.
+// Shows files, or compares them with the shown file, as the viewer does while Shift is down. The page may not have the
+// focus during a drop and then gets no key events, so a press of Shift is passed to the viewer for the time of each
+// drop.
 async function showFiles(files, compares) {
     const shift = into_sapp_keycode("ShiftLeft");
     for (const file of files) {
@@ -77,11 +78,11 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files), false));
 
-// Mouse events of a drag go to the canvas, even if the pointer leaves the canvas or the button is released outside.
+// During a drag, the canvas gets all mouse events, even if the pointer leaves it or the button is released outside.
 element("glcanvas").addEventListener("pointerdown", (event) => event.target.setPointerCapture(event.pointerId));
 
-// Opens the file or scene of the URL. Called after the viewer's first report, because the viewer accepts no files
-// before.
+// Opens the file or scene of the URL. This is done after the viewer's first report, because the viewer accepts no files
+// earlier.
 let started = false;
 function start() {
     if (started) {
@@ -108,7 +109,8 @@ miniquad_add_plugin({
                 return info(text);
             }
             LINES[kind](fields);
-            // This function runs inside a call from the viewer, which cannot be re-entered. So the start is postponed.
+            // The viewer calls this function, and a call into the viewer is not possible from here. So the start is
+            // postponed.
             setTimeout(start);
         };
         imports.env.console_error = (text) => fail(UTF8ToString(text));

@@ -2,7 +2,7 @@
 //
 //     node crates/viewer/web/test.mjs PAGE_DIRECTORY COMMAND SCREENSHOT_DIRECTORY
 //
-// The verdicts and hashes of a golden replay and of damaged replays must agree with the command's output.
+// The page must show the verdicts and hashes that the command prints, for a golden replay and for damaged replays.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createServer } from "node:http";
@@ -46,7 +46,7 @@ function serve() {
     return new Promise((done) => server.listen(0, "127.0.0.1", () => done(server)));
 }
 
-// Code of Shift in the debugging protocol.
+// Bit of the Shift key among the modifiers in Chromium's debugging protocol.
 const SHIFT = 8;
 
 // Drops a file on the page.
@@ -71,7 +71,7 @@ async function scrubsAndMatches(browser) {
     assert.equal(state.hash, end, "the final hash should equal the native one");
     assert.ok(state.status.includes(end) && state.status.includes("Match"), "the status should show hash and verdict");
 
-    // Presses keys: ten single ticks back, to the start, then one second and one tick forward.
+    // Ten single ticks back, then to the start, then one second and one tick forward.
     for (let back = 1; back <= 10; back++) {
         await browser.press("ArrowLeft");
         await settled(browser, ticks - back);
@@ -108,7 +108,7 @@ async function scrubsAndMatches(browser) {
     console.log(`scrubbed to tick ${state.tick}: ${state.hash}, equal to the command's`);
 }
 
-// A file that is dropped with Shift is compared with the shown file.
+// A file that is dropped while Shift is down is compared with the shown file.
 async function compares(browser) {
     await drop(browser, GOLDEN, SHIFT);
     const same = ({ name, status }) => name === basename(GOLDEN) && status.includes("identical up to tick");

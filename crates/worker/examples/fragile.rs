@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 
-/// Input that aborts the process.
+/// Input that aborts the process, unless the environment variable `FRAGILE_RECORDS` is set.
 const FATAL: u8 = 13;
 
 struct Fragile(u64);
@@ -52,7 +52,7 @@ impl Game for Fragile {
     }
 }
 
-/// With `record INPUT`, prints a replay of one tick.
+/// Runs the worker. With the arguments `record INPUT`, prints a replay of one tick with this input instead.
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
     let Some([_, input]) = arguments.get(1..3).filter(|words| words[0] == "record") else {

@@ -15,7 +15,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::{results, submit, work};
 
-/// Stack size of a thread in bytes. Games may rely on this size, because it is usual for a main thread.
+/// Stack size of the runtime's threads in bytes: that of a usual main thread, so that games may rely on it.
 const STACK_BYTES: usize = 8 << 20;
 
 /// Exit code for an error.
@@ -50,13 +50,14 @@ impl<G: Game + 'static> Worker<G> {
         Worker { limits: Limits::default(), game: PhantomData }
     }
 
-    /// Sets the limits of a replay. Arguments override them.
+    /// Sets the limits of a replay. Command-line arguments override them.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Worker { limits, ..self }
     }
 
-    /// Runs the command that the arguments of this process select. Exit code 0 is success, 2 wrong usage or an error.
+    /// Runs the command that the arguments of this process select. The exit code is 0 for success, and 2 for wrong
+    /// usage or an error.
     #[must_use]
     pub fn run(&self) -> ExitCode {
         match self.start() {

@@ -14,7 +14,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::submit::Names;
 
-/// Time for which a failing request is repeated. Requests to NATS are repeated for about as long.
+/// Time for which a request that fails is repeated. Requests to NATS are repeated for about the same time.
 const RETRY: Duration = Duration::from_secs(60);
 
 #[derive(Clone, Debug)]

@@ -30,8 +30,8 @@ pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64)
     Ok(bytes)
 }
 
-/// Compares the digest of the bytes with that of the job. If a file is too large, only its beginning was read, so its
-/// digest is not compared.
+/// Returns the bytes if their digest is that of the job. If the file is larger than `bytes_max`, only its beginning was
+/// read, so the digest is not compared.
 pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec<u8>> {
     let is_whole = u64::try_from(bytes.len()).is_ok_and(|length| length <= bytes_max);
     if is_whole && blake3::hash(&bytes).to_hex().as_str() != job.blake3 {

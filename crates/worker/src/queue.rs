@@ -17,17 +17,17 @@ use crate::app::Connection;
 use crate::error::WorkerError;
 use crate::job::Job;
 
-/// Time within which a job that is submitted again counts as a duplicate.
+/// Time for which a submitted job is remembered. If it is submitted again within this time, it counts as a duplicate.
 const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 
 /// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Time without requests after which the server deletes the consumer of a command `results`. While a pager pauses the
-/// output, the command sends no requests.
+/// Time without requests after which the server deletes the consumer of a `results` command. It is long, because the
+/// command sends no requests while a pager holds up its output.
 const RESULTS_KEPT: Duration = Duration::from_secs(10 * 60);
 
-/// Pauses between attempts. Together they last about a minute, in which a server can restart.
+/// Pauses between attempts. They last about a minute in total, which is enough for a restart of the server.
 const PAUSES: [Duration; 8] = [
     Duration::from_millis(100),
     Duration::from_millis(400),
@@ -53,8 +53,8 @@ pub(crate) enum Added {
     Known,
 }
 
-/// Name made of the rules, the semantics id and the version of the rules, so that programs of different versions do not
-/// share jobs.
+/// Default name of the queue: the name of the rules, the semantics id and the version of the rules. Programs of
+/// different versions therefore do not share jobs.
 pub(crate) fn default_name(rules: RulesId) -> String {
     let name: String =
         rules.name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
@@ -114,10 +114,9 @@ impl Queue {
             durable_name: Some(CONSUMER.into()),
             ack_policy: AckPolicy::Explicit,
             ack_wait,
-            // The server delivers a job any number of times. Workers check the number of deliveries, so that a file
-            // that crashes workers gets a result, too.
+            // No limit: workers count the deliveries instead, so that a file that crashes workers gets a result, too.
             max_deliver: -1,
-            // There is no limit here, because each worker has at most one unacknowledged job.
+            // No limit: each worker has at most one unacknowledged job.
             max_ack_pending: -1,
             ..Default::default()
         };
@@ -138,7 +137,7 @@ impl Queue {
         retry("look up a result", look).await
     }
 
-    /// Adds a result, unless there is one with the same key.
+    /// Adds a result, unless a result with this key exists.
     pub(crate) async fn add_result(&self, key: &str, line: &str) -> Result<Added, WorkerError> {
         let publish = || async {
             let message = PublishMessage::build()
@@ -191,7 +190,7 @@ pub(crate) fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).expect("strings and numbers have a JSON form")
 }
 
-/// Repeats a failing operation for about a minute. Then returns the last error.
+/// Repeats a failing operation for about a minute. If all attempts fail, returns the last error.
 pub(crate) async fn retry<T, E, F>(
     what: &'static str,
     mut attempt: impl FnMut() -> F,

@@ -12,20 +12,20 @@ use crate::error::WorkerError;
 use crate::queue::Queue;
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for results.
+/// Longest time for which the server waits for results before it answers a request.
 const EXPIRES: Duration = Duration::from_secs(2);
 
 /// Maximum number of results per request.
 const BATCH: usize = 500;
 
-/// Time after a signal in which a batch may be printed completely.
+/// Time for which printing may continue after a signal, so that a batch is complete.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Prints the results. With `follow`, also prints later results. A signal ends it.
+/// Prints the results. With `follow`, also prints later results, until a signal arrives.
 pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
     let mut shutdown = Shutdown::listen(GRACE)?;
     let (connection, mut signal) = (connection.clone(), shutdown.clone());
-    // Printing has its own task, because it blocks while the reader of the output takes no lines.
+    // Printing runs in its own task, because it blocks while nobody reads the output.
     let printing = tokio::spawn(async move {
         tokio::select! {
             printed = print(&connection, rules, follow) => printed,

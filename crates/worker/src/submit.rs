@@ -17,7 +17,8 @@ use crate::files::inside;
 use crate::job::{Job, Source};
 use crate::queue::{Added, Queue, json, retry};
 
-/// Number of files that are submitted at the same time. With one at a time, acknowledgements would limit the rate.
+/// Number of files that are submitted at the same time. With fewer, the rate would be limited by the wait for each
+/// acknowledgement.
 const AT_ONCE: usize = 16;
 
 /// Names of files, as in jobs and results.
@@ -121,7 +122,7 @@ async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), Wo
         return Ok(());
     }
     let bytes = std::fs::read(path).map_err(WorkerError::read(path))?;
-    // Otherwise the store would keep wrong bytes under this digest.
+    // If the file has changed since its digest was computed, the store would keep wrong bytes under this digest.
     if blake3::hash(&bytes).to_hex().as_str() != blake3 {
         return Err(WorkerError::read(path)(std::io::Error::other("the file has changed in the meantime")));
     }

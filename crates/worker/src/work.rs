@@ -25,22 +25,23 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
+/// Longest time for which the server waits for a job before it answers a request. After a signal, an idle worker ends
+/// within this time.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which an unanswered request counts as lost. It is shorter than the timeout of the NATS
-/// client, because the client reports a lost request like an empty queue.
+/// A request that is not answered within this time after [`EXPIRES`] counts as lost. The time is shorter than the
+/// timeout of the NATS client, because after its timeout the client reports a lost request as if the queue were empty.
 const LOST: Duration = Duration::from_secs(4);
 
-/// A worker ends when all requests have failed for this time.
+/// If all requests have failed for this time, the worker ends.
 const OUTAGE_MAX: Duration = Duration::from_secs(60);
 
 /// Pause before another attempt to read a file. It is multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// Verdict on a file whose allowed deliveries all ended without a result.
+/// Verdict on a file that was delivered as often as `--max-deliver` allows, each time without a result.
 const CRASHED: &str = "crashed";
-/// Name, in the metrics, of the result for a file that cannot be read.
+/// Label, in the metrics, of results for files that could not be read.
 const UNREAD: &str = "unread";
 
 struct Work<G: Game + 'static> {
@@ -139,7 +140,7 @@ async fn next(jobs: &PullConsumer) -> Result<Option<Message>, WorkerError> {
     result
 }
 
-/// The time of the first failed request, if all later requests have failed, too.
+/// The time of the first request that failed, if no request has succeeded since.
 #[derive(Default)]
 struct Outage(Option<Instant>);
 
@@ -197,8 +198,8 @@ impl<G: Game + 'static> Work<G> {
             tokio::select! {
                 done = &mut verify => return done,
                 () = tokio::time::sleep(self.progress) => {
-                    // If this message is lost, another worker may verify the file, too. The server refuses the later
-                    // result.
+                    // If this message is lost, another worker may verify the file as well. The server then accepts only
+                    // the first result.
                     let _ = message.ack_with(AckKind::Progress).await;
                 }
             }
@@ -213,8 +214,8 @@ impl<G: Game + 'static> Work<G> {
             Err(_) => return Done::Again(READ_AGAIN * u32::try_from(delivered).unwrap_or(u32::MAX)),
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
-        // Users match results with files by the digest of the whole file. It cannot be computed here, because only the
-        // beginning of a large file has been read.
+        // The result contains the digest of the whole file, by which users match results with files. The digest is
+        // taken from the job, because only the beginning of a large file has been read.
         let judged = tokio::task::spawn_blocking(move || judge.judge_part(&file, &bytes, &digest)).await;
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
@@ -247,12 +248,12 @@ async fn give_back(message: &Message) {
 }
 
 /// Acknowledges a message, and waits up to 5 s for the server's confirmation. If the acknowledgement is lost, the job
-/// is delivered again. The worker that gets it finds the result and drops the job.
+/// is delivered again. The worker that gets it finds that the result exists, and drops the job.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// Result for a job that has been delivered too often. Its file is not read again.
+/// Result for a job that has been delivered too often. The file is not read.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

@@ -8,7 +8,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")
 }
 
-/// Adds all documents below a folder to `found`, except those in hidden folders, `target` and `node_modules`.
+/// Adds all Markdown files below a folder to `found`, except those in hidden folders, `target` and `node_modules`.
 fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -42,7 +42,7 @@ fn links(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Returns the anchors of the headings of a document, as links name them after `#`.
+/// Returns the anchors of the headings of a document: the texts that links have after `#`.
 fn headings(text: &str) -> BTreeSet<String> {
     let headings = prose(text).filter(|line| line.starts_with('#'));
     headings

@@ -1,7 +1,7 @@
 //! A game with a mistake, for `docs/FUZZING.md`: two players walk over a field and pick fruit.
 //!
-//! A player that reaches for fruit gets the first piece nearby. The fruit is in a `HashMap`, whose iteration order is
-//! random.
+//! The mistake: the fruit is in a `HashMap`, whose iteration order is random, and a player that reaches for fruit gets
+//! the first piece nearby in this order.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -49,7 +49,7 @@ pub struct Player {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Save {
     players: [Player; 2],
-    /// Sorted, so that equal fruit has one encoding.
+    /// Places and weights of the fruit, sorted, so that equal states have the same encoding.
     fruit: Vec<((i16, i16), u32)>,
     rng: Rng,
     tick: u64,
@@ -100,7 +100,7 @@ impl Game for Harvest {
                 }
                 Action::Reach => {
                     let is_near = |(x, y): (i16, i16)| (x - player.x).abs() <= 2 && (y - player.y).abs() <= 2;
-                    // The effect of the mistake: the first match in random order.
+                    // Here the mistake has its effect: which piece is found first depends on the random order.
                     let found = self.fruit.keys().copied().find(|place| is_near(*place));
                     let weight = found.and_then(|place| self.fruit.remove(&place));
                     player.weight += u64::from(weight.unwrap_or(0));

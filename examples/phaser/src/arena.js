@@ -10,7 +10,7 @@ const KEYS = [["A", "D", "W", "S"], ["LEFT", "RIGHT", "UP", "DOWN"]];
 /** The keys of a player. */
 class Pad {
     #keys;
-    // Keys pressed since the last tick. A short press between two ticks must not be lost.
+    // Bits of the keys that were pressed since the last tick, so that a short press between two ticks is not lost.
     #pressed = 0;
 
     constructor(keyboard, names) {
@@ -49,7 +49,7 @@ export class Arena extends Phaser.Scene {
         this.cameras.main.centerOn(0, -1.4 * SCALE);
 
         const pads = KEYS.map((names) => new Pad(this.input.keyboard, names));
-        // Alone at the keyboard of an online match, a player may use both sets of keys.
+        // In an online match, only one player is at this keyboard and may use both sets of keys.
         session.readPad = (seat) => (session.relay ? pads[0].read() | pads[1].read() : pads[seat].read());
         session.onTick = (tick) => this.#tick(tick);
         this.input.keyboard.on("keydown-R", () => this.#save());
@@ -97,8 +97,9 @@ export class Arena extends Phaser.Scene {
         }
     }
 
-    // The handle of a body is its stable id. But after a rollback another body may have the same handle, for example a
-    // small box instead of a crate, so the texture is set again whenever the kind differs.
+    // A sprite belongs to the handle of a body, which stays the same for the life of the body. But after a rollback
+    // another body may have this handle, for example a small box instead of a crate, so the texture is set again
+    // whenever the kind differs.
     #sprite(id) {
         const kind = KINDS[Number(this.session.game.world.body(id).userData)];
         let sprite = this.sprites.get(id);
@@ -111,8 +112,9 @@ export class Arena extends Phaser.Scene {
         return sprite;
     }
 
-    // Particles, shakes and banners cannot be taken back. So they follow confirmed ticks, a few ticks later than the
-    // bodies, which are drawn from guessed ticks and corrected after a wrong guess.
+    // Particles, shakes of the camera and banners cannot be taken back, so they are shown only for confirmed ticks.
+    // They are a few ticks later than the bodies, which are drawn with guessed inputs and corrected after a wrong
+    // guess.
     #tick({ effects, points }) {
         this.points.forEach((text, seat) => text.setText(points[seat]));
         for (const { kind, at, speed, seat } of effects) {
@@ -158,7 +160,7 @@ export class Arena extends Phaser.Scene {
         }
     }
 
-    // Saves the replay of the confirmed ticks so far. This ends the recording, even if the match goes on.
+    // Saves the replay of the confirmed ticks so far. The recording then ends, even if the match goes on.
     #save() {
         const { recording } = this.session;
         if (recording === undefined) {

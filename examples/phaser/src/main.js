@@ -47,7 +47,7 @@ class Title extends Phaser.Scene {
         this.message.setText(`Room ${room}: connecting to ${RELAY}`);
         try {
             const session = await Session.online(RELAY, room);
-            // The address of this page, with the room, is an invitation.
+            // Adds the room to the address of this page: a player who opens this address joins the match.
             parameters.set("room", room);
             history.replaceState(null, "", `?${parameters}`);
             this.scene.isActive() ? this.scene.start("arena", { session }) : session.leave();
@@ -67,8 +67,8 @@ const game = new Phaser.Game({
     scale: { mode: Phaser.Scale.FIT, autoCenter: Phaser.Scale.CENTER_HORIZONTALLY },
     audio: { noAudio: true },
     banner: false,
-    // A draw call for each texture: renderers without a GPU, such as that of the test, draw some quads of several
-    // textures wrongly.
+    // One texture per draw call: if a draw call uses several textures, software renderers, such as that of the test,
+    // draw some of its quads wrongly.
     render: { maxTextures: 1 },
     scene: [Title, Arena],
 });

@@ -10,13 +10,13 @@ export class Recording {
     /** Number of recorded ticks. */
     ticks = 0;
 
-    /** `game` is in the state before the first tick. */
+    /** Starts a recording. `game` must be in the state before the first tick. */
     constructor(game) {
         this.#last = game;
         this.#recorder = new Recorder({ rules: RULES, players: SEATS, inputBytes: 1, start: game.hash() });
     }
 
-    /** Adds a tick, with the hash and the points after it. Has no effect after `finish`. */
+    /** Adds the inputs of a tick, and the hash and the points after this tick. Has no effect after `finish`. */
     add({ inputs, absent }, hash, points) {
         if (this.#file === undefined) {
             this.ticks += 1;
@@ -25,7 +25,7 @@ export class Recording {
         }
     }
 
-    /** The replay. Ends the recording; further calls return this replay again. */
+    /** Ends the recording and returns the replay. Further calls return the same replay. */
     finish() {
         if (this.#file === undefined) {
             claim(this.#last.points, this.#recorder);
@@ -35,7 +35,7 @@ export class Recording {
     }
 }
 
-/** The verdict on a file, which may come from any source. */
+/** Verifies a replay, which may come from an untrusted source. Returns the verdict and a text that explains it. */
 export function verify(bytes) {
     const game = new Game();
     let replay;
@@ -56,7 +56,7 @@ export function verify(bytes) {
     return replay.verdict(game.hash());
 }
 
-// The points at the end can be read from the file, and the verdict compares them with those of the game.
+// Passes the points at the end as claims: a recorder writes them to the file, a replay compares them with the file.
 function claim([amber, blue], target) {
     target.claim("amber", amber);
     target.claim("blue", blue);

@@ -1,25 +1,25 @@
-// The rules: two players on a seesaw push each other into the water. They run on every peer with the same inputs, so
-// they contain no floats, no `Math.random`, no clock and nothing of Phaser.
+// The rules: two players on a seesaw push each other into the water. Every peer executes the rules with the same inputs
+// and must get the same state, so they use no floats, no `Math.random`, no clock and nothing of Phaser.
 import { World, box, circle, hashBytes, polygon } from "lockstep2d";
 
 export const RULES = "seesaw";
 export const SEATS = 2;
 /** Number of points that win a match. */
 export const WIN = 5;
-/** Bits of an input; a player has one byte for each tick. */
+/** Bits of an input. The input of a player for a tick is one byte. */
 export const [LEFT, RIGHT, JUMP, SLAM] = [1, 2, 4, 8];
-/** Kinds of bodies. The `userData` of a body is the index of its kind, and the name is that of its texture. */
+/** Names of the kinds of bodies and of their textures. The `userData` of a body is the index of its kind. */
 export const KINDS = ["post", "plank", "amber", "blue", "crate", "box"];
-/** Height of the water in metres. */
+/** The y coordinate of the water surface in metres. */
 export const WATER = "-2.25";
 
-// Ticks between two crates, and ticks from a point to the next round.
+// Number of ticks between two crates, and number of ticks from a point to the next round.
 const [CRATE_EVERY, REST] = [150, 100];
 const CRATES_MAX = 6;
 const encoder = new TextEncoder();
 
 export class Game {
-    /** State outside of the world: the points of both players, and the ticks until the next round or 0. */
+    /** State outside of the world: points of each player; ticks until the next round (`rest`, 0 during a round). */
     points = new Uint8Array(SEATS);
     rest = 0;
     /** Effects of the last tick, for drawing. They are not part of the state. */
@@ -27,7 +27,7 @@ export class Game {
 
     constructor() {
         const world = new World({ gravity: [0, -20], hitSpeed: 2 });
-        // A sensor that slows down everything that falls into it.
+        // The water is a sensor that slows down everything that falls into it.
         const water = box(40, 4, { offset: [0, -4], area: { linearDrag: 6 } });
         this.post = world.spawn({
             type: "fixed",
@@ -57,7 +57,7 @@ export class Game {
         this.world.step();
         const { hits, sensorBegin, moved } = this.world.events();
         this.effects = hits.map(({ point, approachSpeed }) => ({ kind: "hit", at: point, speed: approachSpeed }));
-        // The only sensor is the water.
+        // The water is the only sensor, so each visitor has fallen into the water.
         const fallen = sensorBegin.map(({ visitor }) => this.world.shape(visitor).body);
         for (const body of fallen) {
             this.effects.push({ kind: "splash", at: this.world.body(body).position });
@@ -125,7 +125,7 @@ export class Game {
         });
     }
 
-    // The functions below are for `MatchDriver` and `ReplayDriver`. They cover the whole state.
+    // `MatchDriver` and `ReplayDriver` call the functions below, which save, load and hash the whole state.
 
     save() {
         return { world: this.world.save(), points: this.points.slice(), rest: this.rest };

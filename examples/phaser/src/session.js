@@ -5,11 +5,11 @@ import { Game, RULES, SEATS } from "./rules.js";
 
 const TICK = 1000 / 60;
 
-/** The game of this page, with the data that drawing needs. This data is not part of the state. */
+/** The game of this page, with additional data for drawing that is not part of the state. */
 class Shown extends Game {
-    /** Poses before the last tick. */
+    /** Poses of the bodies before the last tick, to interpolate between ticks. */
     before = new Float64Array();
-    /** Time of the last tick. */
+    /** Time in ms at which the last tick was played (`performance.now()`). */
     time = 0;
     /** Effects, points and hash by tick. A tick that is played again after a rollback replaces its earlier entry. */
     log = new Map();
@@ -22,7 +22,8 @@ class Shown extends Game {
     }
 }
 
-// The identity in a room is in the session storage, so that a page that is reloaded gets its seat back.
+// Returns the identity of this page in a room. It is kept in the session storage, so that the page gets its seat back
+// after a reload.
 function identity(room) {
     const name = `seesaw ${room}`;
     const stored = sessionStorage.getItem(name);
@@ -37,7 +38,7 @@ export class Session {
     /** Called once for each confirmed tick, with its effects and the points. No rollback can undo these ticks. */
     onTick = () => {};
     game = new Shown();
-    /** Undefined if this page has joined later, and so lacks the first inputs. */
+    /** Undefined if this page has joined a match that had already begun, and so lacks the inputs of its first ticks. */
     recording = new Recording(this.game);
     error = "";
     #confirmed = 0;
@@ -69,8 +70,8 @@ export class Session {
                 this.#update();
             };
         }
-        // A timer drives the match, because the loop of Phaser stops in the background, and the other player must not
-        // have to wait.
+        // A timer drives the match. The loop of Phaser stops while the page is in the background, and the other player
+        // would have to wait.
         this.timer = setInterval(() => this.#update(), 4);
     }
 
@@ -87,7 +88,8 @@ export class Session {
         this.status === "connecting" ? this.#close() : this.match.leave();
     }
 
-    // A match in this page pauses while the page is in the background, where its timer is called only once a second.
+    // The time of the match in ms. Between two calls, a match without a relay advances by at most 100 ms, so it almost
+    // stops while the page is in the background, where the browser calls the timer only once a second.
     #clock() {
         const now = performance.now();
         const passed = now - this.#last;

@@ -18,14 +18,14 @@ const FIELD: (Fx, Fx) = (fx!(8), fx!(4));
 /// Driving force of a player, in N.
 const FORCE: Fx = fx!(30);
 
-/// Everything that the first tick depends on.
+/// The options of a match, from which the state before the first tick is built.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setup {
     /// Goals of each player at the start.
     pub handicap: [u32; 2],
 }
 
-/// Input of a player for a tick: direction of the force, components -1, 0 or 1.
+/// Input of a player for a tick: the direction of the force. Each component is -1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
     /// Positive to the right.
@@ -49,7 +49,7 @@ pub struct Rules {
     pub goals: [u32; 2],
 }
 
-/// A copy of the state. The handles of the bodies never change.
+/// A copy of the state. It does not contain the handles of the bodies, because they never change.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Save {
     world: Snapshot,
@@ -105,7 +105,7 @@ impl MyGame {
 
     fn push(&mut self, inputs: &[Input]) -> Result<(), WorldError> {
         for (player, input) in self.players.into_iter().zip(inputs) {
-            // A replay from an untrusted source may contain any value.
+            // A replay from an untrusted source may contain other values than -1, 0 and 1.
             let axis = |value: i8| FORCE * Fx::from(value.signum());
             self.world.apply_force_to_centre(player, Vec2::new(axis(input.x), axis(input.y)))?;
         }
@@ -130,7 +130,7 @@ impl Game for MyGame {
     type Input = Input;
     type Save = Save;
 
-    /// Raise the version when a change of the rules leads to other states.
+    /// Raise the version when you change the rules so that the same inputs lead to other states.
     const RULES: RulesId = RulesId { name: "my game", version: 1 };
 
     fn new(setup: &Setup) -> Result<Self, SetupError> {
@@ -147,11 +147,11 @@ impl Game for MyGame {
 
     fn step(&mut self, inputs: &[Input]) {
         let pushed = if self.is_over() { Ok(()) } else { self.push(inputs) };
-        // The world advances in every tick, even if the world has refused an input.
+        // The world advances in every tick, even if it has refused a force.
         self.world.step();
         let judged = self.judge();
-        // An error is a defect of the rules, or comes from the state of an untrusted save. A release build continues
-        // after it, in the same way on every machine.
+        // An error is a defect of the rules, or comes from the state of an untrusted save. A release build ignores it
+        // and continues, in the same way on every machine.
         if let Err(error) = pushed.and(judged) {
             debug_assert!(false, "tick {}: {error}", self.world.tick());
         }

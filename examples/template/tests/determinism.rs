@@ -6,10 +6,10 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
 use my_game::{Input, MyGame, Setup};
 
-/// State hash after 600 ticks. Raise the version of the rules when a change of the rules changes this hash.
+/// State hash after 600 ticks. If a change of the rules changes this hash, raise the version of the rules.
 const GOLDEN: &str = "621d889f2e803eaa07536dddb610306e";
 
-/// Inputs of both players, with new directions twice a second.
+/// Inputs of both players for each tick. The directions are random, and change twice a second.
 fn inputs(ticks: usize) -> Vec<Vec<Input>> {
     let mut rng = Rng::new(1);
     let mut axis = || i8::try_from(rng.below(3)).map_or(0, |number| number - 1);

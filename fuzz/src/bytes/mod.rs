@@ -1,7 +1,7 @@
 //! Targets whose input is a file or packets.
 //!
-//! The first byte of an input selects whether the other bytes are the file itself, or describe changes of an original
-//! file. It also selects whether the checksums of the file are repaired.
+//! The first byte of an input selects whether the other bytes are the file itself or describe changes of an original
+//! file, and whether the checksums of the resulting file are repaired. (The target `session` has another format.)
 
 pub mod replay;
 pub mod report;
@@ -17,7 +17,7 @@ struct Attempt<'a> {
     original: Option<&'a [u8]>,
 }
 
-/// Makes a file from an input. `repair` corrects all checksums of a file.
+/// Makes a file from an input, whose changes refer to one of `originals`. `repair` corrects all checksums of a file.
 fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<u8>)) -> Attempt<'a> {
     let Some((&mode, rest)) = bytes.split_first() else {
         return Attempt { file: Vec::new(), original: None };

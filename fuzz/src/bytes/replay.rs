@@ -13,7 +13,7 @@ use crate::forge;
 use crate::generator::spawn;
 use crate::memory::Memory;
 
-/// Limits that keep an execution short.
+/// Limits so low that a verification takes little time.
 pub(super) const LIMITS: Limits = Limits {
     file_bytes: 8 << 10,
     setup_bytes: 4 << 10,
@@ -26,7 +26,8 @@ pub(super) const LIMITS: Limits = Limits {
     total_work: 4000,
 };
 
-/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy of the one with bodies.
+/// A recording of [`Memory`], one of a sandbox with bodies, one of an empty sandbox, and a truncated copy of the
+/// second.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
     let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);
@@ -57,14 +58,14 @@ pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsR
 /// Verifies a file and returns the name of the verdict.
 ///
 /// # Panics
-/// When a changed original matches. Also when the inputs of a matching file, recorded again, give another file.
+/// If a changed original matches, or if recording the inputs of a matching file again gives a different file.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, forge::repair);
     let verdict = match judge::<Memory>(&attempt.file) {
         Verdict::Unverifiable { .. } => judge::<Sandbox>(&attempt.file),
         verdict => verdict,
     };
-    // The change may have completed the truncated copy, so that it equals the original recording.
+    // A file that equals an original counts as unchanged: changes of the truncated copy may have completed it again.
     let changed = attempt.original.is_some() && !ORIGINALS.contains(&attempt.file);
     assert!(!changed || !verdict.is_match(), "a changed file must not match");
     verdict.name()

@@ -12,7 +12,7 @@ use super::replay::{LIMITS, ball};
 use crate::memory::Memory;
 use crate::snapshots::repair;
 
-/// For [`Memory`] and for [`Sandbox`], a correct report and one of a peer that diverged after two ticks.
+/// Four reports: of [`Memory`] and then of [`Sandbox`], a correct one and one of a peer that diverged after two ticks.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = |fail: bool| {
         report::<Memory>(&(), &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0]], |game, tick| {
@@ -36,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory(false), memory(true), sandbox(false), sandbox(true)]
 });
 
-/// The two correct reports.
+/// The correct reports of [`Memory`] and of [`Sandbox`].
 static RIGHT: LazyLock<[Evidence; 2]> = LazyLock::new(|| {
     [0, 2].map(|at: usize| {
         Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report is valid")
@@ -69,7 +69,7 @@ fn report<G: Game>(
 /// Reads a file, compares it with a correct report, and returns the result as one word.
 ///
 /// # Panics
-/// When a decoded report encodes to other bytes, or when the comparison blames the side of the correct report.
+/// If a decoded report encodes to other bytes, or if the comparison blames the side of the correct report.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     if let Ok(report) = DesyncReport::from_bytes(&attempt.file, &LIMITS) {

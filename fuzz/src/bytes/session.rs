@@ -1,7 +1,8 @@
-//! Sends changed packets to two peers that play and to a third one that joins them after 20 ticks.
+//! Sends changed packets to peers of a match: to two peers that play from the start, and to a third one that begins to
+//! join after 20 ticks.
 //!
-//! After 20 to 39 ticks, the attacks that the input describes begin. Each attack changes one of the last 64 packets and
-//! sends it.
+//! The input sets the number of ticks before the attacks, 20 to 39, and then describes each attack. Each attack changes
+//! one of the last 64 packets and sends it.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 
@@ -85,7 +86,7 @@ fn play(session: &mut lockstep2d::session::Session, now: u64) {
     while session.next_event().is_some() {}
 }
 
-/// Corrects the checksum of a packet of the match with the tag `tag`.
+/// Corrects the checksum of a packet for the match with the tag `tag`.
 pub fn repair(tag: u64, bytes: &mut [u8]) {
     if let Some((sum, body)) = bytes.split_first_chunk_mut::<4>() {
         let digest = twox_hash::XxHash3_128::oneshot_with_seed(tag, body).to_le_bytes();
@@ -93,7 +94,8 @@ pub fn repair(tag: u64, bytes: &mut [u8]) {
     }
 }
 
-/// Runs an input. Returns whether all endpoints have a session that has played more than 20 ticks.
+/// Simulates the match and the attacks of an input. Returns whether all three endpoints have a session that has played
+/// more than 20 ticks.
 pub fn run(bytes: &[u8]) -> bool {
     let mut game = Match::new();
     let mut source = Source::new(bytes);

@@ -15,7 +15,8 @@ use crate::snapshots::repair;
 /// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 1000;
 
-/// Snapshots of five worlds: empty, touching, jointed, asleep, with vacant slots.
+/// Snapshots of five worlds: an empty one; two bodies that touch; the same bodies with a joint; the bodies asleep; the
+/// upper body alone, with vacant slots of removed bodies.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let empty = World::new(Config::default()).expect("valid");
     let mut touching = empty.clone();
@@ -43,7 +44,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
 /// Reads a world and, if it is valid, steps it at most twice. Returns whether it is valid.
 ///
 /// # Panics
-/// When a decoded world encodes to other bytes, breaks an invariant, or depends on its caches.
+/// If a decoded world encodes to other bytes, breaks an invariant, or depends on its caches.
 pub fn run(bytes: &[u8]) -> bool {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     let Ok(mut world) = World::from_bytes(&attempt.file) else { return false };

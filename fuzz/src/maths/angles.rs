@@ -54,7 +54,8 @@ fn units(source: &mut Source<'_>, angle: Angle) {
     assert_eq!(bits(Angle::from_turns(x)), wrapped(x.to_bits().into()));
     assert_eq!(bits(Angle::from_degrees(x)), wrapped(halves_away(&(of(x) / exact::integer(360)), 32)), "{x}");
     let exact = halves_up(&(of(x) / turn), 32);
-    // The engine multiplies by a rounded constant, which adds an error of up to a sixteenth of a unit.
+    // The engine multiplies by a rounded constant. This adds an error of up to a sixteenth of a unit, so the rounded
+    // result may be off by one unit.
     let off = wrapped(bits(Angle::from_radians(x)) - exact + 1);
     assert!(off <= BigInt::from(2), "{x} rad");
 }
@@ -74,7 +75,7 @@ fn directions(source: &mut Source<'_>) {
     let (x, y) = (BigInt::from(v.x.to_bits()), BigInt::from(v.y.to_bits()));
     let across: BigInt = (&y * &cos - &x * &sin).abs();
     assert!((&x * &cos + &y * &sin).is_positive(), "{v:?} points away from {angle:?}");
-    // sin(error) |v| = across, and the sine of such a small angle equals the angle.
+    // `across` is `|v| sin(error)`. The error is so small that it equals its sine.
     let length = exact::root(&((x.pow(2) + y.pow(2)) << 128));
     let unit: BigInt = (&*PI * 2) >> 32;
     assert!((across << 64) * 1000 <= unit * length * 701, "{v:?}: {angle:?}");
@@ -100,7 +101,7 @@ fn rotations(source: &mut Source<'_>, angle: Angle) {
     let found = rotation.apply(Vec2::new(Length::from_bits(a), Length::from_bits(b)));
     let exact = cos * fixed(a, 22) - sin * fixed(b, 22);
     assert_eq!(BigInt::from(found.x.to_bits()), saturated(halves_up(&exact, 22), 32), "{a} {b} {angle:?}");
-    // Composing rotations equals rotating by the sum, within rounding.
+    // The composition of two rotations equals the rotation by the sum of their angles, within 4 units of 2^-30.
     let other = Angle::from_bits(source.word() as u32);
     let (both, sum) = (rotation.then(Rot::from_angle(other)), Rot::from_angle(angle + other));
     let off = |a: Unit, b: Unit| (i64::from(a.to_bits()) - i64::from(b.to_bits())).abs();

@@ -49,7 +49,7 @@ pub(crate) fn root(value: &BigInt) -> BigInt {
 /// Number of fractional bits of [`PI`] and of the results of [`sin_cos`].
 pub(crate) const PRECISION: u32 = 160;
 
-/// Half a turn in radians, by J. Machin: `pi / 4 = 4 atan(1/5) - atan(1/239)`.
+/// Pi, by Machin's formula: `pi / 4 = 4 atan(1/5) - atan(1/239)`.
 pub(crate) static PI: LazyLock<BigInt> =
     LazyLock::new(|| (arc_tangent_of_inverse(5) * 4 - arc_tangent_of_inverse(239)) * 4);
 
@@ -67,7 +67,7 @@ fn arc_tangent_of_inverse(n: i64) -> BigInt {
 
 /// Sine and cosine of `bits / 2^32` turns.
 pub(crate) fn sin_cos(bits: u32) -> (BigInt, BigInt) {
-    // The angle is reduced to at most an eighth of a turn, where the series is short.
+    // The angle is reduced to at most an eighth of a turn, because the series then needs few terms.
     let quarter = bits.wrapping_add(1 << 29) >> 30;
     let rest = i64::from(bits.wrapping_sub(quarter << 30) as i32);
     let angle: BigInt = (&*PI * rest) >> 31;
@@ -88,7 +88,7 @@ fn series(x: &BigInt, first: i64) -> BigInt {
         sum += &term;
         term = -(((&term * x) >> PRECISION) * x >> PRECISION) / ((n + 1) * (n + 2));
         n += 2;
-        // Shifts round down: a negative term would never become zero.
+        // A right shift rounds down, so a negative term ends at -1 and never becomes zero.
         if term == -BigInt::one() {
             break;
         }

@@ -10,7 +10,7 @@ mod roots;
 use crate::source::Source;
 use lockstep2d::math::{Fx, Vec2};
 
-/// Tries operations until the bytes end. Returns their number.
+/// Tries operations until the bytes end. Returns the number of operations tried.
 ///
 /// # Panics
 /// When a result is not within the documented error, or is not saturated where it should be.
@@ -29,7 +29,7 @@ pub fn run(bytes: &[u8]) -> u64 {
     tried
 }
 
-/// A number near a limit, an ordinary number, or a number with few bits.
+/// A number at or near a limit, a multiple of 0.001 from -100 to 100, or random bits shifted by a random distance.
 fn number(source: &mut Source<'_>) -> Fx {
     match source.below(3) {
         0 => source.edge(),

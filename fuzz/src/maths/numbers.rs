@@ -105,7 +105,7 @@ fn sums(source: &mut Source<'_>) {
     assert_eq!(BigInt::from(dot.to_bits()), saturated(halves_up(&exact, 27), 32), "{a:?} . {b:?}");
 }
 
-/// Checks that the error is at most the rounding of the result plus a relative 2^-31.
+/// Checks that the error is at most half a unit of the result plus 2^-31 times the result.
 fn reciprocals(source: &mut Source<'_>) {
     let bits = source.within(4, (1 << 62) - 1);
     let a = small(source);
@@ -142,7 +142,7 @@ fn matrices(source: &mut Source<'_>) {
     for (found, numerator) in [(inverse.a11, d), (inverse.a12, -b), (inverse.a21, -c), (inverse.a22, a)] {
         let quotient = numerator / &exact;
         let error = (BigInt::from(found.to_bits()) - saturated(halves_away(&quotient, 32), 64)).abs();
-        // With all entries at the limits, the determinant has an error of one unit.
+        // If all entries are at the limits, the determinant would be 2^127. It saturates to one unit less.
         assert!(error <= BigInt::from(1), "{matrix:?}: {found}");
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn check(source: &mut Source<'_>) {
         if !crowded {
             return vector(source);
         }
-        // With few different coordinates, many points are collinear.
+        // With only six different coordinates, many points are equal or collinear.
         let few = [Fx::ZERO, Fx::ONE, Fx::DELTA, -Fx::ONE, Fx::MAX, Fx::MIN];
         Vec2::new(source.pick(&few), source.pick(&few))
     };
@@ -56,7 +56,7 @@ fn dot(a: &Point, b: &Point, c: &Point) -> Exact {
     (&b[0] - &a[0]) * (&c[0] - &a[0]) + (&b[1] - &a[1]) * (&c[1] - &a[1])
 }
 
-/// Checks that a point is rounded to nearest.
+/// Checks that each coordinate of `found` is the one of `at`, rounded to nearest.
 fn assert_near(found: Vec2<Fx>, at: &Point, what: &dyn Fn() -> String) {
     let half = fixed(1, 33);
     for (found, exact) in [found.x, found.y].into_iter().zip(at) {

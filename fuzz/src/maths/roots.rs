@@ -50,7 +50,7 @@ fn assert_root(found: BigInt, x: &BigInt, bits: u32) {
     assert_eq!(found, saturated(rounded, bits), "the root of {x}");
 }
 
-/// Checks that each component has an error of at most 0.76 units.
+/// Checks that each component of the unit vector of `(x, y)` has an error of at most 0.76 units of 2^-30.
 fn assert_unit(unit: Vec2<Unit>, x: i64, y: i64) {
     // The length has 80 more fractional bits than the vector.
     let length = root(&((square(x) + square(y)) << 160));

@@ -1,4 +1,4 @@
-//! Slots, which are values with generations, and the list of vacant slots.
+//! An arena as a snapshot stores it: slots, each with a generation and an optional value, and the list of vacant slots.
 
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +43,7 @@ impl<T> Arena<T> {
         self.handle(self.slots.len() - 1)
     }
 
-    /// Removes a value in the way that a world does.
+    /// Removes a value as a world does: the slot becomes vacant, or is retired if its generations are used up.
     pub(super) fn remove(&mut self, index: usize) -> Option<T> {
         let slot = self.slots.get_mut(index)?;
         let value = slot.value.take()?;
@@ -56,8 +56,8 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Swaps two entries of the list of vacant slots, adds a vacant slot with an entry, or adds a slot whose
-    /// generations are used up.
+    /// Makes one of three changes: swaps two entries of the list of vacant slots, adds a vacant slot and its entry in
+    /// the list, or adds a retired slot, whose generations are used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

@@ -109,7 +109,8 @@ impl State {
         self.weigh(index)
     }
 
-    /// Sets the mass of a body, and the fat AABBs of a fixed body's shapes, to those that a new world computes.
+    /// Sets the mass of a body to the one that a new world computes. If the body is fixed, does so for the fat AABBs of
+    /// its shapes, too.
     pub(super) fn weigh(&mut self, index: usize) -> Option<()> {
         let body = self.bodies.get(index)?.clone();
         let shapes: Vec<_> =

@@ -26,7 +26,7 @@ struct KeptManifold {
 }
 
 impl KeptManifold {
-    /// The world accepts the zero vector and unit vectors. It refuses the last two of these vectors.
+    /// Normals to draw from. The world accepts the zero vector and unit vectors, and so refuses the last two.
     const NORMALS: [Vector; 6] = [
         [0, 0],
         [0, 1 << 30],

@@ -27,7 +27,7 @@ impl State {
                 self.merge(from, to)
             }
             _ => {
-                // The body gets an island of its own.
+                // A body of an island with several bodies gets an island of its own.
                 let island = self.islands.pick(source)?;
                 let slots = &mut self.islands.get(island)?.bodies;
                 let at = source.below(slots.len());

@@ -45,7 +45,7 @@ pub struct State {
 
 /// Maximum component of a velocity, in raw units of `Speed`.
 const SPEED_MAX: i64 = 511 << 21;
-/// Maximum of an impulse, in raw units of `Speed`.
+/// Maximum magnitude of an impulse, in raw units of `Speed`.
 const IMPULSE_MAX: i64 = 1023 << 21;
 /// Maximum coordinate of a centre of mass, in raw units of `Fx`.
 const CENTRE_MAX: i64 = ((1 << 30) + 1024) << 32;
@@ -68,7 +68,7 @@ impl State {
     /// Decodes the state of a world.
     ///
     /// # Panics
-    /// When the layout is not the one described here.
+    /// When the bytes of the world do not have the layout that these types describe.
     #[must_use]
     pub fn of(world: &World) -> Self {
         let bytes = world.to_bytes();
@@ -84,7 +84,8 @@ impl State {
         codec::encode(self)
     }
 
-    /// Makes a change that is often valid, or no change if the drawn one is impossible.
+    /// Makes one random change. The changed state is often valid. If the drawn change is impossible, for example
+    /// because there is no joint, the state stays as it is.
     pub fn alter(&mut self, source: &mut Source<'_>) {
         let before = self.clone();
         if self.try_alter(source).is_none() {

@@ -135,7 +135,8 @@ fn build_mill(world: &mut World) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Hangs a flail that points outwards on the bar: three links of 0.5 m and a ball.
+/// Hinges a flail to the end of the bar at `side` (1 or -1), pointing outwards: three links, each 0.5 m from hinge to
+/// hinge, and a ball.
 fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError> {
     let link = Geometry::capsule(Vec2::new(fx!(-0.2), fx!(0)), Vec2::new(fx!(0.2), fx!(0)), fx!(0.08))?;
     let link = ShapeDef::new(link).density(fx!(6));
@@ -172,7 +173,8 @@ pub(crate) fn lay_crates(world: &mut World, rng: &mut Rng) -> Result<(), WorldEr
     Ok(())
 }
 
-/// Places a player at one of `count` evenly spaced positions from the angle `first`.
+/// Places a player on the start ring: at position `place` of `count` evenly spaced positions, counted counter-clockwise
+/// from 0 at the angle `first`.
 pub(crate) fn place_player(
     world: &mut World,
     seat: u8,
@@ -190,7 +192,7 @@ pub(crate) fn draw_platform(world: &mut World, radius: Fx) -> Result<(), WorldEr
     world.set_geometry(shape, Geometry::circle(radius)?)
 }
 
-/// Removes players and crates outside of the platform. Returns the seats of the players.
+/// Removes the players and crates whose centres are outside of the platform. Returns the seats of the removed players.
 pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let falls = |body: &Body| {
         matches!(Role::of(body), Role::Player(_) | Role::Crate) && body.centre_of_mass().length() > radius

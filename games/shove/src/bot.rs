@@ -15,10 +15,11 @@ use crate::view::Player;
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// Distance from the edge, in metres. The bot turns back if it would be closer to the edge in 0.3 s.
+    /// Smallest distance from the edge that the bot accepts, in metres. It turns back towards the centre if its
+    /// predicted position in 0.3 s is closer to the edge.
     caution: Fx,
     pad: Pad,
-    /// Number of ticks for which the bot keeps its pad.
+    /// Number of further ticks for which the bot keeps its pad.
     hold: u32,
 }
 
@@ -78,7 +79,7 @@ impl Bot {
         let way = there - me.position;
         let distance = way.length();
         let outwards = other.position.normalized().map_or(Vec2::ZERO, Vec2::widen);
-        // Outward component of the vector to the opponent, in metres.
+        // Radial distance by which the opponent is farther outwards than the bot, in metres.
         let inside = way.dot(outwards);
         if inside > fx_mul(distance, fx!(0.4)) {
             let push = Pad::towards(way);

@@ -17,7 +17,7 @@ use crate::setup::Setup;
 const ACCELERATION: Fx = fx!(9);
 /// Velocity change of a dash, in m/s.
 const DASH: Fx = fx!(8);
-/// Ticks between two dashes.
+/// Smallest number of ticks between two dashes of a player, unless a plate recharges the dash.
 const RECHARGE: u8 = 75;
 /// Velocity change by a bumper, in m/s.
 const KICK: Fx = fx!(5);
@@ -97,8 +97,8 @@ impl Shove {
         }
     }
 
-    /// Stops at the first change that the world refuses. The world may refuse a change after an untrusted save has been
-    /// loaded.
+    /// Advances the rules and accelerates the players. Stops at the first change that the world refuses, which may
+    /// happen after an untrusted save has been loaded.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {
@@ -167,9 +167,9 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// The limits of bodies and shapes plus the numbers of pairs and joints, times the iterations of the solver in a
-    /// tick. The square of the limit of shapes is added for new pairs. Limits are used instead of current numbers,
-    /// because a new round may add all players and crates.
+    /// `(bodies + shapes + pairs + joints) * sub-steps * iterations + shapes²`. The last term is for the search for new
+    /// pairs. `bodies` and `shapes` are the world's limits instead of the current numbers, because a new round may add
+    /// all players and crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

@@ -2,8 +2,8 @@
 //!
 //! The view is from above. A player is a disc that is controlled by a [`Pad`] of one byte, and can dash when the dash
 //! is recharged. A mill in the centre swings two flails, bumpers kick bodies, plates recharge the dash, and crates lie
-//! around. A player whose centre leaves the platform falls. In a round, each player still standing then gets a point.
-//! The last one standing wins the round, unless the time runs out first.
+//! around. A player whose centre leaves the platform falls. While a round is being played, each player who still stands
+//! then gets a point. The last player standing wins the round, unless the time runs out first.
 //!
 //! The game is the example for lockstep, rollback, late join and the viewer.
 //!

@@ -83,7 +83,7 @@ impl Participation<Address> {
 }
 
 impl Participation<&str> {
-    /// Enters a match over UDP, at the address `bind` or a free port.
+    /// Enters a match over UDP. `bind` is the local address of the socket; `None` stands for any free port.
     ///
     /// # Errors
     /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup or an option is
@@ -117,7 +117,8 @@ fn resolve(address: &str) -> Result<SocketAddr, OnlineError> {
     found.next().ok_or_else(|| error(None))
 }
 
-/// Plays all ticks that are due. `pad` returns the local player's pad, given the game and the local seat.
+/// Plays all ticks that are due. For each tick and each local seat, `pad` returns the local player's pad for the next
+/// tick, given the game and the seat.
 ///
 /// # Errors
 /// [`PeerError`] if the match cannot continue.

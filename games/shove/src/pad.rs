@@ -3,7 +3,7 @@
 use lockstep2d::math::{Angle, Fx, Unit, Vec2};
 use serde::{Deserialize, Serialize};
 
-/// Buttons that are down, one bit each. Bits 5 and 6 are ignored, and opposite directions cancel each other.
+/// Buttons that are held down, one bit each. Bits 5 and 6 are ignored, and opposite directions cancel each other.
 ///
 /// ```
 /// use lockstep2d::math::Vec2;
@@ -72,7 +72,8 @@ impl Pad {
         if direction == Vec2::ZERO {
             return Pad::default();
         }
-        // With this offset, the boundaries between pads are at multiples of an eighth of a turn.
+        // Each pad stands for an eighth of a turn around its direction. After adding a sixteenth, these ranges begin at
+        // multiples of an eighth, so that the top three bits are the index of the pad.
         let sixteenth = Angle::from_bits(1 << 28);
         let eighth = (Angle::of(direction) + sixteenth).to_bits() >> 29;
         Pad::COMPASS[eighth as usize]

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use crate::SEATS_MAX;
 use crate::arena;
 
-/// Ticks before a round, in which players cannot move.
+/// Length of [`Phase::Ready`] in ticks, in which players cannot move yet.
 const READY: u16 = 60;
-/// Longest round, in ticks.
+/// Maximum length of [`Phase::Fight`], in ticks.
 const FIGHT: u16 = 1200;
-/// Pause after a round, in ticks.
+/// Length of [`Phase::Pause`] after a round, in ticks.
 const PAUSE: u16 = 75;
-/// Ticks of a round until the first ring crumbles.
+/// Ticks from the start of [`Phase::Fight`] until the first ring crumbles.
 const FIRST_RING: u16 = 180;
 /// Ticks between two rings.
 const RING: u16 = 60;
@@ -90,8 +90,9 @@ impl Rules {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// Sets whether the player of a seat is present. A player who leaves loses its body, but does not fall. A player
-    /// who joins gets a body in the next round, which begins at once if the current round is practice.
+    /// Sets whether the player of a seat is present. A player who leaves loses its body. This is not a fall, so nobody
+    /// gets a point. A player who joins gets a body in the next round. If the current round is practice, the next round
+    /// begins at once.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;
@@ -102,7 +103,8 @@ impl Rules {
         }
     }
 
-    /// Counts down a tick, and enters the next phase when due.
+    /// Counts down the ticks of the phase. Enters the next phase when the time is up, when the round is decided, or
+    /// when a player joins a practice round.
     pub(crate) fn advance(&mut self, world: &mut World, rounds: u8) -> Result<(), WorldError> {
         self.ticks_left = self.ticks_left.saturating_sub(1);
         let (present, standing) = (self.count(|seat| seat.present), self.count(|seat| seat.body.is_some()));
@@ -174,8 +176,8 @@ impl Rules {
         Ok(())
     }
 
-    /// Clears the bodies in the seats of fallen players. In a round, each player still standing gets a point for each
-    /// fallen player.
+    /// Clears the bodies in the seats of fallen players. In [`Phase::Fight`], each player still standing gets a point
+    /// for each fallen player.
     pub(crate) fn fall(&mut self, fallen: &[u8]) {
         for &seat in fallen {
             if let Some(seat) = self.seats.get_mut(usize::from(seat)) {

@@ -39,8 +39,8 @@ impl Catalogue<Shove> for Matches {
     }
 }
 
-/// Whether a bot is present. Each bot joins 200 ticks after the previous one, and leaves for the last 300 of every 1500
-/// ticks.
+/// Whether a bot is present. Each bot joins 200 ticks after the previous one. From then on it is present for 1200 ticks
+/// and absent for 300, in turn.
 fn guest_is_there(seat: u64, tick: u64) -> bool {
     let arrival = 200 * seat;
     tick >= arrival && (tick - arrival) % 1500 < 1200

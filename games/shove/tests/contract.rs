@@ -129,7 +129,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     let mut played = 0;
     for _ in 0..2000 {
         let mut bytes = bytes.clone();
-        // Most of the changed bytes are in the rules, at the end of the save.
+        // Three of four changes are in the last 80 bytes of the save, which belong to the rules.
         let back = if rng.chance(3, 4) { 80 } else { bytes.len() };
         let at = bytes.len()
             - 1
@@ -149,7 +149,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     assert!(played > 100, "{played}");
 }
 
-/// Plays wrong predictions of pads, loads the save, and plays the right pads.
+/// Plays a few ticks with wrongly predicted pads, loads the save, and plays the same ticks with the right pads.
 #[test]
 fn rolling_back_leaves_no_trace() {
     for (setup, log) in logs() {

@@ -1,5 +1,5 @@
-//! Matches between processes over UDP: all peers end in the same state, and their replays verify. A whole match runs
-//! in real time and needs a machine that keeps up, so only `.ci/run` runs whole matches.
+//! Matches between processes over UDP: all peers end in the same state, and their replays verify. A whole match takes
+//! its real time, on a machine that is fast enough for all processes, so only `.ci/run` runs whole matches.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -96,7 +96,7 @@ fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     pads
 }
 
-/// Waits until a replay that is being written has a number of ticks.
+/// Waits until a replay that is being written has at least `ticks` ticks.
 fn wait_for_ticks(replay: &Path, ticks: usize) {
     let has_them =
         |replay: Vec<u8>| Reader::open(&replay, &Limits::default()).is_ok() && pads(&replay).len() >= ticks;
@@ -228,7 +228,7 @@ fn an_interrupted_process_leaves_and_its_replay_verifies() {
     }
 }
 
-/// The error message names the reason.
+/// The process refuses to start, and its error message names the reason.
 #[test]
 fn an_earlier_replay_is_not_replaced() {
     let folder = Folder::new("earlier");

@@ -37,7 +37,8 @@ struct Whole<T> {
     digests: Vec<StateHash>,
 }
 
-/// Cached copies, not part of the state. A cell is empty if its part of the arena has changed since it was last copied.
+/// Cached copies, not part of the state. A cell is empty if its part of the arena has changed since the last copy, or
+/// has never been copied.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
@@ -130,13 +131,15 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Counter for caches of the fields that every step changes. [`Arena::note_change`] and [`Arena::restore`]
-    /// increment it. After a restore, the caller sets these fields.
+    /// Counter that invalidates caches of fields that every step changes, such as the impulses of joints. Edits of such
+    /// fields ([`Arena::note_change`]) and [`Arena::restore`] increment it. `restore` leaves these fields to its
+    /// caller.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }
 
-    /// Invalidates caches of the fields that every step changes, after a change outside of a step.
+    /// Increments [`Arena::returns`]. Must be called after a change, outside of a step, of a field that every step
+    /// changes.
     pub(crate) fn note_change(&mut self) {
         self.kept.returns += 1;
     }
@@ -177,8 +180,8 @@ impl<T, H> Arena<T, H> {
         Whole { pages, vacancies, digests }
     }
 
-    /// Restores the arena, except for the fields that every step changes. Calls `changed` with every slot that was
-    /// removed or whose value may differ.
+    /// Restores the arena from a snapshot, except for the fields that every step changes. Calls `changed` with every
+    /// slot that the restore removes, and with every slot whose value it may change.
     pub(crate) fn restore(&mut self, shared: &SharedArena<T>, mut changed: impl FnMut(u32))
     where
         T: Clone,

@@ -1,7 +1,8 @@
 //! Area, centre of mass and radius of gyration of a rounded convex polygon.
 //!
-//! The core is the polygon without its rounding. Its moments about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly,
-//! "Polyhedral Mass Properties"), are
+//! The core is the polygon without its rounding. It has the vertices `v_i`, the area `A`, the centre of mass `c` and
+//! the radius of gyration `k`. Its moments about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass
+//! Properties"), are
 //!
 //! ```text
 //! A            = 1/2 sum c_i

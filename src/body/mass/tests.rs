@@ -45,7 +45,8 @@ fn textbook_shapes_have_textbook_masses() {
 fn a_rounded_rail_weighs_its_core_its_sides_and_four_quarter_discs() {
     let rail = Polygon::rectangle(fx!(0.4), fx!(20)).unwrap().rounded(fx!(0.2)).unwrap();
     let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset((fx!(1), fx!(2)))]).unwrap();
-    // Density 3 times the area: core, sides and corners. Rounding to `Length` changes 0.2 by 5e-8 and 0.4 by 1e-7.
+    // The density, 3, times the areas of core and sides (48.32) and of the corners (0.04 pi). The tolerance allows for
+    // the rounding of 0.2 and 0.4 to `Length`, by 5e-8 and 1e-7.
     let expected = fx!(144.96) + fx_mul(fx!(0.12), PI);
     assert!((properties.mass - expected).abs() < fx!(0.0001), "expected {expected}, got {}", properties.mass);
     assert_eq!(properties.centre, Vec2::new(fx!(1), fx!(2)));

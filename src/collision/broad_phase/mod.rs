@@ -44,12 +44,13 @@ pub enum BroadPhaseKind {
     Tree,
     /// Incremental sweep and prune: fast if most boxes move by small distances. Queries visit every box.
     SweepAndPrune,
-    /// Tests every pair of boxes. Serves as a test oracle.
+    /// Tests every pair of boxes: slow, but so simple that tests compare the others with it.
     BruteForce,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moved<'a> {
+    /// All pairs.
     All,
     /// Pairs with at least one box in these slots. Slots may repeat or be vacant.
     Slots(&'a [u32]),
@@ -245,7 +246,7 @@ impl BroadPhase {
         }
     }
 
-    /// Whether a slot was in the last [`Moved::Slots`].
+    /// Whether a slot was in the list of the last search with [`Moved::Slots`].
     pub(crate) fn has_moved(&self, slot: u32) -> bool {
         self.moved.has(slot)
     }
@@ -255,7 +256,8 @@ impl BroadPhase {
         self.search(Overlap { area, visit });
     }
 
-    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies, or for the boxes of all other bodies.
+    /// Like [`BroadPhase::each_overlap`], but visits only boxes of fixed bodies (if `fixed`) or only boxes of other
+    /// bodies.
     pub(crate) fn each_overlap_of(
         &self,
         fixed: bool,
@@ -326,7 +328,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims rarely, to amortise the cost of a sort over many pushes.
+        // Trims only when the list has twice its limit, so that the cost of a sort is spread over many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

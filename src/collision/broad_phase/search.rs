@@ -54,7 +54,8 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
         let (dx, dy) = coarse(self.translation);
-        // Rounding down has moved each corner, and the end of the translation, by less than one unit.
+        // Rounding down has moved each corner, and the end of the translation, by less than one unit. Two units of
+        // margin on each side of the difference make up for it.
         let (left, right) = (box_lower.0 - upper.0 - 2, box_upper.0 - lower.0 + 2);
         let (bottom, top) = (box_lower.1 - upper.1 - 2, box_upper.1 - lower.1 + 2);
         let (y_least, y_most) = if dx < 0 { (top, bottom) } else { (bottom, top) };
@@ -128,8 +129,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // The radius `Fx::MAX` reaches every box, because distances saturate there. With a smaller radius, the squares
-        // are added only if each distance is below 2^63, so that the sum fits.
+        // The radius `Fx::MAX` reaches every box, because larger distances saturate to it. With a smaller radius, the
+        // squares are added only if both distances are below 2^63, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

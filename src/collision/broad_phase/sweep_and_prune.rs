@@ -59,7 +59,7 @@ impl SweepAndPrune {
         let axis = self.best_axis();
         let turned = core::mem::replace(&mut self.axis, axis) != axis;
         self.copy_boxes();
-        // An insertion sort would be quadratic after a change of axis or many insertions.
+        // After a change of axis or many insertions, an insertion sort would take quadratic time.
         if turned || self.newcomers > 64 {
             self.sorted.sort_unstable_by_key(Interval::key);
         }

@@ -349,7 +349,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // The root is in units of 2^-31 m, so that the square of a distance fits 128 bits, and is rounded up.
+        // The root is in units of 2^-31 m, because squares in finer units would not fit 128 bits. It is rounded up.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };

@@ -46,8 +46,8 @@ pub(crate) struct Tree {
     /// Number of leaves inserted or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
-    /// Number of moves since the last refit or rebuild that left a leaf misplaced: out of its neighbourhood, but not
-    /// relinked. See [`Tree::stays_near`].
+    /// Number of moves since the last refit or rebuild that left a leaf in place although its fourth ancestor did not
+    /// contain the new box. See [`Tree::stays_near`].
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -58,9 +58,10 @@ pub(super) struct Node {
     parent: u32,
     /// 0 for a leaf.
     height: u8,
-    /// Class of a leaf, or the common class of the leaves below.
+    /// Collision class of a leaf. For an inner node, the class that all leaves below have, or
+    /// [`CollisionClass::NONE`] if their classes differ.
     class: CollisionClass,
-    /// Whether the current search wants the pairs of this leaf or of a leaf below.
+    /// Whether the current search wants the pairs of this leaf or, for an inner node, of a leaf below.
     pub(super) marked: bool,
     /// Children. For a leaf, its slot and [`NONE`].
     children: [u32; 2],
@@ -90,8 +91,8 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // Enlarges the ancestors of a few misplaced leaves. Relinking the leaves would lose the storage order that
-            // makes a refit fast.
+            // A few misplaced leaves stay in place, and their ancestors are enlarged: relinking them would lose the
+            // storage order that makes a refit fast.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -264,7 +265,7 @@ impl Tree {
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
 
-    /// Updates ancestors, up to the first one that does not change.
+    /// Updates the node `at` and its ancestors, up to the first one that does not change.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
             let Node { aabb, height, class, parent, .. } = *self.at(at);
@@ -343,7 +344,7 @@ impl Node {
     }
 }
 
-/// Half the perimeter in units of 2^-30 m. The sum for two of the widest boxes fits 64 bits.
+/// Half the perimeter, in units of 2^-30 m. The sum for two boxes of the largest size fits 64 bits.
 fn perimeter(aabb: Aabb) -> u64 {
     let Aabb { lower, upper } = aabb;
     (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)

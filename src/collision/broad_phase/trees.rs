@@ -85,7 +85,7 @@ impl Trees {
         self.meet(|_| true, found);
     }
 
-    /// [`Trees::each_pair`] for pairs with at least one of `slots`.
+    /// Like [`Trees::each_pair`], but only for pairs with at least one of `slots`.
     pub(super) fn each_pair_of(&mut self, slots: &[u32], found: impl FnMut(Pair)) {
         self.mark(slots, true);
         self.meet(|node| node.marked, found);

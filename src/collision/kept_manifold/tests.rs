@@ -67,7 +67,8 @@ fn separations_follow_the_bodies() {
                 continue;
             };
             let error = separation.dist(point.separation);
-            // The normal turns by up to 0.0006 rad, and so does the edge along which a clipped point moves.
+            // `separations_at` is exact to first order only. The normal rotates by up to 0.0006 rad, and so does the
+            // edge along which a clipped point moves.
             assert!(error < Step::lit("0.000007"), "{separation} instead of {}", point.separation);
             kept_points += 1;
         }

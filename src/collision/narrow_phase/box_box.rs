@@ -18,14 +18,14 @@ use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::threads::split_at_ends;
 
-/// Largest distance in metres between the centres along either axis. Corners, at most 3 m from their box's centre, are
-/// then less than `5 sqrt(2) + 2 * 3 < 14` m apart, which fits a `Step` (16 m).
+/// Largest distance in metres between the centres of two boxes, on each axis. Each corner is at most 3 m from the
+/// centre of its box, so corners are at most `5 sqrt(2) + 2 * 3 < 14` m apart, which fits a `Step` (below 16 m).
 const DISTANCE_MAX: Fx = fx!(5);
 
 /// Largest speculative margin in metres.
 const MARGIN_MAX: Length = Length::lit("2");
 
-/// Compact copies of the boxes, by shape slot. A copy takes half a cache line, and a [`PosedShape`] four lines.
+/// Compact copies of the boxes, by shape slot. A copy takes half a cache line; a [`PosedShape`] takes four.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
     turned: Vec<Turned>,
@@ -84,7 +84,7 @@ impl SmallBoxes {
         }
     }
 
-    /// Divides the boxes into ranges that end at the given slots.
+    /// Divides the boxes into consecutive ranges. For each slot in the ascending list `ends`, one range ends before it.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = usize> + Clone,
@@ -138,8 +138,8 @@ impl BoxPairs {
         self.count = 0;
     }
 
-    /// Adds a pair, with the vector `d` between the centres. Returns false, without adding, if the distance or the
-    /// margin is out of range.
+    /// Adds a pair. `d` is the vector from the centre of A to that of B. Returns false, without adding the pair, if the
+    /// distance or the margin is out of range.
     #[inline]
     pub(crate) fn push(&mut self, (a, b): Pair, d: Vec2<Fx>, radii: [Length; 2], margin: Length) -> bool {
         if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {

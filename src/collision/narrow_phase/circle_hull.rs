@@ -30,8 +30,8 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // A centre on the line of a segment, beyond its end, has distance 0 from both faces, or slightly less by
-        // rounding.
+        // For a line, the sign of the distance does not matter: a centre on the line beyond an end has distance 0 from
+        // both faces, or slightly less by rounding.
         Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
@@ -43,7 +43,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         return Manifold::NONE;
     }
     let separation = Step::from_bits(saturate(distance - radii));
-    // Distance from the circle's centre to the middle of the gap: `radius` to the surface, then half the separation.
+    // Distance from the circle's centre to the middle of the gap: the radius, plus half the separation.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })

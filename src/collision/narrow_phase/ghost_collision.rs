@@ -17,7 +17,7 @@ use super::segment;
 use crate::collision::shape::posed::{Hull, Outline, PosedShape};
 use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
-/// Cosine between a face normal and the contact normal above which the contact is on that face.
+/// If the cosine between a face normal and the contact normal exceeds this value, the contact is on that face.
 const SAME: Unit = Unit::lit("0.999999");
 /// If the contact is on a face, the filter does not test faces whose cosine to the contact normal exceeds this value
 /// (26 degrees).
@@ -27,17 +27,17 @@ const OWN: Unit = Unit::lit("0.9");
 pub(crate) struct GhostFilter {
     /// Displacement of B relative to A, in metres.
     pub(crate) shift: Vec2<Length>,
-    /// Largest displacement in metres of a point by rotation.
+    /// Largest displacement, in metres, of a point of either shape by rotation.
     pub(crate) turn: Length,
     /// Overlap in metres that the filter tolerates and leaves to the next tick.
     pub(crate) slack: Length,
-    /// Largest approach along the axis in metres. A shape that approaches more falls onto the face and does not pass
-    /// it.
+    /// Largest approach towards a face in metres, along its normal. A shape that approaches more falls onto the face
+    /// and does not pass it.
     pub(crate) approach: Length,
-    /// Contact normal, with either sign.
+    /// Contact normal. Its sign does not matter.
     pub(crate) normal: Vec2<Unit>,
-    /// The filter does not test faces with a larger cosine to the contact normal: the shapes touch there and do not
-    /// pass by.
+    /// The filter tests only faces whose cosine to the contact normal is at most this value. At other faces, the shapes
+    /// touch and do not pass by.
     own: Unit,
 }
 

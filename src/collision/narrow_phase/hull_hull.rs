@@ -2,7 +2,8 @@
 //! incident edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
 //!
 //! If the outlines do not overlap, the closest features may be two corners, which no face normal detects. The normal is
-//! then the line between the corners, so that a box that falls past the corner of another box does not catch on it.
+//! then parallel to the line between the corners, so that a box that falls past the corner of another box does not
+//! catch on it.
 
 mod clip;
 
@@ -12,9 +13,9 @@ use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
-/// B's best face becomes the reference face if its separation exceeds that of A's best face by more than this margin in
-/// metres. Without the margin, the choice between two equal faces would change from tick to tick, and anchors would
-/// jump. Polygons with a separation above the margin count as disjoint.
+/// Tolerance of separations, in metres. B's best face becomes the reference face only if its separation exceeds that of
+/// A's best face by more than the tolerance. Otherwise the choice between two equal faces would change from tick to
+/// tick, and contact anchors would jump. Outlines with a separation above the tolerance count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// Fraction bits of the product of a length and a unit vector.
@@ -23,8 +24,9 @@ pub(in crate::collision) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(in crate::collision) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// The face that separated a pair in the last tick. Testing it first does not change the result: if its separation
-/// exceeds the margin, there is no contact.
+/// The face of A or B that separated a pair when the pair was last tested. If this face still separates them by more
+/// than the speculative margin, there is no contact, and the other faces need no test. The cache does not change
+/// results.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum CachedAxis {
     #[default]
@@ -40,17 +42,20 @@ pub(crate) struct SatCounters {
 }
 
 /// Cosine of 2.6 degrees, in the format of a product of two [`Unit`] numbers. Two faces within this angle count as
-/// parallel. If the reference face alternated between the outlines, columns of 50 to 100 rounded boxes would fall.
+/// parallel, and between parallel faces of separate rounded outlines A's face is preferred, within [`TOLERANCE`]. If
+/// the reference face alternated between A and B, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
 #[derive(Clone, Copy)]
 pub(in crate::collision) struct Face {
     pub(in crate::collision) edge: usize,
-    /// Separation of the other outline's vertices from the face, without radii, with 52 fraction bits.
+    /// Smallest distance of the other outline's vertices from the line of the face, without radii, in metres with 52
+    /// fraction bits. Negative behind the face.
     pub(in crate::collision) separation: i64,
 }
 
-/// `d` is the vector from the centre of A to the centre of B.
+/// Contact manifold of two outlines, with anchors relative to the centre of A. `d` is the vector from the centre of A
+/// to the centre of B. The manifold has no points if the surfaces are more than `margin` metres apart.
 pub(crate) fn collide(
     a: &Hull,
     b: &Hull,
@@ -62,7 +67,8 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let from_cache = match *cached_axis {
-        // The SIMD path has no cached axes. Ignoring them for the same pairs here gives equal counters on all machines.
+        // Pairs of small boxes use no cached axis, because the SIMD path has none. The counters are then equal on all
+        // machines.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -107,8 +113,8 @@ pub(in crate::collision) fn is_reference_of_b(
     face_b: Face,
     apart: bool,
 ) -> bool {
-    // If the outlines are apart, only the face with the larger separation is next to the nearest corner, so the
-    // tolerance does not apply. Rounded outlines with parallel faces are an exception.
+    // A's face is preferred within the tolerance if the outlines overlap, or if they are rounded and their faces are
+    // parallel. In all other cases only the face with the larger separation is next to the nearest corner.
     let is_rounded = a.radius.saturating_add(b.radius) > 0;
     let prefers_a = !apart || is_rounded && are_parallel(a.normals()[face_a.edge], b.normals()[face_b.edge]);
     face_b.separation > face_a.separation + if prefers_a { TOLERANCE_WIDE } else { 0 }
@@ -133,7 +139,8 @@ pub(in crate::collision) fn are_apart(
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// Whether `a` is a line and `b` is beyond one of its ends. A line has no faces at its ends.
+/// Whether `a` is a line and `b` is beyond an end of `a`. A line has no faces at its ends, so the separating axis test
+/// does not detect this case.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();
@@ -168,7 +175,7 @@ pub(in crate::collision) fn face_before(hull: &Hull, point: Vec2<Length>) -> Fac
 
 #[inline(never)]
 fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // Loops over a constant number of vertices, which the compiler unrolls.
+    // Each call has a constant number of vertices, so that the compiler unrolls its loop.
     let others = b.vertices();
     match others.len() {
         2 => furthest_from::<2>(a, others, d),
@@ -199,7 +206,8 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
     best
 }
 
-/// [`furthest`] for two boxes, in which opposite vertices and faces differ in sign.
+/// [`furthest`] for two boxes. Opposite vertices and opposite normals of a box differ only in sign, so the first two
+/// faces are enough to find the best of the four.
 #[inline(always)]
 fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d: Vec2<Length>) -> Face {
     let further_of_opposite = |edge: usize, n: Vec2<Unit>, vertex: Vec2<Length>| {
@@ -213,7 +221,8 @@ fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d:
     if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
 }
 
-/// Largest `n . v` over the vertices of a box, given by its first two.
+/// Largest `n . v` over the four vertices `v` of a box, with 52 fraction bits. The arguments are the first two
+/// vertices; the others are opposite to them.
 #[inline(always)]
 fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
     product(n, a).abs().max(product(n, b).abs())
@@ -236,7 +245,8 @@ pub(in crate::collision) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: 
     plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
 }
 
-/// Smallest distance of the vertices of `b` from the line through a point with normal `n`, with 52 fraction bits.
+/// Smallest signed distance of the vertices of `b` from the line through `point` with the normal `n`, with 52 fraction
+/// bits. `d` is the centre of `b` in the coordinates of `point`.
 #[inline]
 pub(in crate::collision) fn plane_separation(
     n: Vec2<Unit>,

@@ -1,7 +1,8 @@
 //! A chain link against a circle or a convex outline.
 //!
-//! The end of a link without neighbours would push a shape that slides over it backwards or upwards: a ghost collision.
-//! The neighbours decide which normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
+//! If links collided like separate segments, the end of a link would push back a shape that slides along the chain, or
+//! push it up: a ghost collision. Therefore the two links at a vertex decide together which contact normals are allowed
+//! there (E. Catto, chain segments of Box2D 3):
 //!
 //! ```text
 //! convex vertex    normals between the normals of the two links; each link has the half nearer to its own normal
@@ -9,7 +10,8 @@
 //! free end         every direction
 //! ```
 //!
-//! A point beside a chain belongs to one link. Inside a concave vertex, it belongs to both links.
+//! A point beside a chain belongs to exactly one link. An exception is a point on the inner side of a concave vertex,
+//! which belongs to both links.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{self, Face, TOLERANCE_WIDE};
@@ -56,7 +58,7 @@ enum Verdict {
 
 /// A link relative to the centre of another shape, oriented so that the shape is on its right.
 pub(crate) struct Facing {
-    /// Edge 0 faces the shape.
+    /// The link as an outline with two edges. Edge 0 faces the shape.
     hull: Hull,
     direction: Vec2<Unit>,
     normal: Vec2<Unit>,
@@ -66,8 +68,9 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// Orients a link towards the point `place` in the other shape. `place` is relative to the centre of the other
-    /// shape. `None` if the link is far away or not solid from this side.
+    /// Orients a link towards a point of the other shape. `centre` is the centre of the other shape relative to the
+    /// centre of the link, and `place` is the point relative to `centre`. `None` if the link is far away, has no
+    /// length, or is not solid on the side of the point.
     pub(crate) fn new(link: &Link, centre: Vec2<Fx>, place: Vec2<Fx>) -> Option<Self> {
         let link = match (link.has_on_right(centre + place), link.sides) {
             (true, _) => *link,
@@ -77,7 +80,7 @@ impl Facing {
         let (p, q) = clipped_to_window(link.a, link.b, centre)?;
         let direction = link.directions.own?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
-            // If the neighbour runs in exactly the opposite direction, the chain ends here.
+            // If the neighbour folds back in exactly the opposite direction, this end of the link counts as free.
             Some(other) if other != -direction => {
                 LinkEnd::Joined { direction: other, turn: turn(other, direction) }
             }
@@ -123,7 +126,9 @@ impl Facing {
         }
     }
 
-    /// Largest separation of `b` from the neighbours' faces at convex vertices. The chain is solid behind both faces.
+    /// Largest separation of `b` from the faces of neighbours that meet this link at a convex vertex, with 52 fraction
+    /// bits; `i64::MIN` without such neighbours. If it exceeds the separation from this link's face, the neighbour
+    /// pushes `b` out, and this link does not.
     fn neighbour_separation(&self, b: &Hull) -> i64 {
         let [start, end] = [(self.start, 0), (self.end, 1)].map(|(end, vertex)| match end {
             LinkEnd::Joined { turn: Turn::Convex, direction } => {
@@ -144,8 +149,8 @@ impl Facing {
             single((-vertex).normalized().unwrap_or(self.normal), distance, radius, margin)
         };
         let beside = || single(self.normal, distance_along(self.normal, -a), radius, margin);
-        // Inside a concave vertex, the other link is nearer to the circle. Contacts with this link are only
-        // speculative, because a fast circle may reach it within the tick.
+        // On the inner side of a concave vertex, the other link is nearer to the circle. This link has only a
+        // speculative contact, for a fast circle that reaches this link within the tick.
         let ahead = |vertex: Vec2<Length>| {
             let near = step_bits(vertex.length()) - step_bits(radius) <= step_bits(margin);
             let contact = beside();
@@ -189,7 +194,8 @@ impl Facing {
         Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
     }
 
-    /// Contact at the nearest features of separate outlines, if the chain allows the normal between them.
+    /// Contact of separate outlines: along the normal between their nearest features, along the link's own normal, or
+    /// none. See [`Verdict`].
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
         let found = if hull_hull::is_reference_of_b(a, b, face_a, face_b, true) {
@@ -197,7 +203,7 @@ impl Facing {
         } else if face_a.edge == 0 {
             hull_hull::clip(a, b, Vec2::ZERO, face_a, true, margin)
         } else {
-            // The shape is behind the link, and in front of its neighbour.
+            // The shape is behind the link and in front of a neighbour.
             return Manifold::NONE;
         };
         if found.points().is_empty() {
@@ -208,14 +214,16 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // A point beyond the end of the link stays only if it is speculative, to limit the approach.
+                // A point beyond an end of the link is kept only if it is speculative: it then limits the approach of
+                // the shape.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }
         }
     }
 
-    /// Whether a point is beside the link, with a slack for the gap at a vertex that counts as flat.
+    /// Whether a point is between the perpendiculars at the link's ends, with a tolerance. At a vertex that counts as
+    /// flat, the perpendiculars of the two links may leave a gap, which the tolerance covers.
     fn is_beside(&self, place: Vec2<Length>, radius: Length) -> bool {
         let slack: Length = (radius / 64).saturating_add(Length::lit("0.0005"));
         let past = |vertex: Vec2<Length>| -> Length { (place - vertex).dot(self.direction) };
@@ -260,7 +268,8 @@ fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     }
 }
 
-/// Contact of a circle about the origin.
+/// Contact of a circle about the origin with a point or a line. `normal` points from there to the origin. `distance` is
+/// in units of `Step`.
 fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> Manifold {
     let separation = distance - step_bits(radius);
     if separation > step_bits(margin) {

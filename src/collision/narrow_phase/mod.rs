@@ -26,11 +26,11 @@ use link::Facing;
 /// edges may count as nearer than they are.
 const REJECT_SLACK: Fx = fx!(0.001);
 
-/// Largest speculative margin in metres, within the range of a separation (16 m).
+/// Largest speculative margin in metres. It is below 16 m, the largest separation that `Step` can hold.
 const MARGIN_MAX: Length = Length::lit("15");
 
-/// Speculative margin of a pair in metres. `closing` is the distance in metres by which the shapes may approach in the
-/// tick.
+/// Speculative margin of a pair in metres: the sum of `speculative`, which all pairs have, and of `closing`, the
+/// distance by which the shapes may approach in the tick. At most [`MARGIN_MAX`].
 #[inline]
 pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
     speculative.saturating_add(convert(closing)).min(MARGIN_MAX)

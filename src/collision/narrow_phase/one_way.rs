@@ -10,7 +10,8 @@
 //! ```
 //!
 //! A shape that turns round half-way falls back through the platform. A shape that has passed is supported as soon as
-//! it is out of the platform. The slack lets a shape slide from one platform to the next.
+//! it is out of the platform. Without the slack, a platform might let through a shape that slides onto it from another
+//! platform with a small overlap.
 
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{Outline, PosedShape};
@@ -54,7 +55,8 @@ impl OneWay<'_> {
         is_open(self.direction, manifold.normal)
     }
 
-    /// Separation of the shapes along the pass direction. Negative until the other shape has passed completely.
+    /// Separation of the shapes along the pass direction, in metres. Negative until the other shape has passed
+    /// completely.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);

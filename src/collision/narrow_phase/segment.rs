@@ -6,12 +6,12 @@ use crate::collision::shape::posed::Hull;
 use crate::fx;
 use crate::math::{Fx, Vec2, div_round, saturate_wide};
 
-/// Half the side of the window in metres: more than the extent of any shape plus the largest margin (171 m), but small
-/// enough that relative coordinates, and the edge itself, fit `Length`.
+/// Half the side of the window in metres: more than the extent of any shape plus the largest margin (171 m in total),
+/// but small enough that the coordinates of the ends, and the differences of these coordinates, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
 /// The part of a segment in the window about the centre of the other shape, relative to that centre. `None` if the
-/// segment misses the window.
+/// segment misses the window or has no length.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>, centre: Vec2<Fx>) -> Option<Hull> {
     let direction = a.towards(b).normalized()?;
     let (p, q) = clipped_to_window(a, b, centre)?;
@@ -22,8 +22,8 @@ pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>, centre: Vec2<Fx>) -> O
     clip(a, b, centre, WINDOW)
 }
 
-/// The part of a segment in a square, relative to the centre of the square. The ends may be so far from the centre that
-/// differences saturate.
+/// The part of a segment in a square, relative to the centre of the square. `None` if the segment misses the square.
+/// Also correct if the ends are so far from the centre that differences of coordinates saturate.
 pub(in crate::collision) fn clip(
     a: Vec2<Fx>,
     b: Vec2<Fx>,
@@ -63,7 +63,8 @@ fn clip_to_half_plane(
 
 /// Point between `p` and `q` at which a linear function is 0. Its values at the ends are `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
-    // The longest line has 2^63.5 units, so the product saturates only near the limits of the number range.
+    // Inside the world, coordinates are at most 2^62 units, so `way` and `at_p` are at most 2^63 units and their
+    // product fits. It saturates only for coordinates near the limits of the number range.
     let part = |p: Fx, q: Fx| {
         let way = i128::from(q.to_bits()) - i128::from(p.to_bits());
         let moved = div_round(way.saturating_mul(at_p), at_p - at_q);

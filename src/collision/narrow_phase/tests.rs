@@ -100,7 +100,8 @@ fn distance(a: &[Vec2<Fx>], b: &[Vec2<Fx>]) -> Fx {
     from(a, b).min(from(b, a))
 }
 
-/// Compares the separation with brute force in 64 bits. Skips outlines that cross or are within 0.5 mm of each other.
+/// Compares the separation with brute force in 64 bits. Skips outlines that, without their radii, cross or are within
+/// 0.5 mm of each other.
 #[test]
 fn separation_is_the_distance_of_outlines_that_are_apart() {
     let mut rng = Rng::new(2);
@@ -120,7 +121,8 @@ fn separation_is_the_distance_of_outlines_that_are_apart() {
                 none += 1;
                 assert!(expected > fx!(0.04999), "missed a contact at {expected} m: {a:?} {b:?}");
             }
-            // Sharp corners that nearly touch are treated as faces.
+            // Outlines within 0.5 mm of each other count as overlapping: the separation is that of a face, and not the
+            // distance.
             Some(found) if found + radius_a + radius_b > fx!(0.0005) => {
                 compared += 1;
                 // Nearly parallel edges are treated as faces, with an error up to the tolerance of 0.5 mm.

@@ -1,9 +1,9 @@
 //! Distance of two cores, which are shapes without their radii. GJK finds the point of `B - A` nearest to the origin
 //! (E. Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
 //!
-//! In two dimensions, a search direction is the vector to a vertex or the perpendicular of an edge, and neither needs
-//! rounding. With exact signs, each step comes strictly nearer, so the search ends without a tolerance and cannot
-//! cycle. The separating axis test gives the depth of overlapping cores.
+//! In two dimensions, a search direction is the vector from a vertex to the origin or the perpendicular of an edge, and
+//! neither needs rounding. With exact signs, each step finds a feature strictly nearer to the origin, so the search
+//! ends without a tolerance and cannot cycle. The separating axis test gives the depth of overlapping cores.
 
 use crate::collision::shape::support::{
     Fraction, Grid, SupportShape, cross, direction, edges, height, length, scaled, scaled_along,
@@ -14,7 +14,7 @@ use crate::math::{Fx, Unit, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Distance {
     /// Distance between the surfaces in metres, or the negative length of the shortest translation that separates them.
-    /// The error is up to 20 nm for separate cores and 1e-9 of the size for overlapping cores.
+    /// The error is up to 20 nm for separate cores, and up to 1e-9 of the size of the shapes for overlapping cores.
     pub(crate) distance: Fx,
     /// Nearest point of A, or its deepest point inside B, relative to the origin of the support shapes.
     pub(crate) point_a: Vec2<Fx>,
@@ -178,7 +178,8 @@ fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
     best.unwrap_or(Axis { separation: Grid::ZERO, normal: Vec2::Y, point_a: shared, point_b: shared })
 }
 
-/// For each face: its normal, the separation of the other core from it, and the nearest point of the other core.
+/// For each face of `support_shape`: its normal, the separation of the other core from the face, and the other core's
+/// point nearest to the face, or deepest behind it.
 fn faces(
     support_shape: &SupportShape,
     other: &SupportShape,

@@ -1,12 +1,12 @@
-//! The part of a convex shape that is inside another convex shape: the area and the centre of that part.
+//! Area and centre of the part of a convex shape that is inside another convex shape.
 //!
 //! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. Each edge of one ring in
 //! turn cuts the other ring (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
-//! to 2^-32. Areas and centres are exact sums, each rounded once.
+//! to a multiple of 2^-32. Areas and centres are exact sums, each rounded once.
 //!
 //! The ring of a rounded outline has a corner in each of 32 directions. The corners are so far out that the ring of a
-//! disc has the area of the disc. The error of the outline is up to 0.4 % of the radius for a disc, and 1.7 % along a
-//! straight edge.
+//! disc has the area of the disc. The error of the outline is up to 0.4 % of the radius for a disc, and up to 1.7 % of
+//! the radius along a straight edge.
 
 use smallvec::SmallVec;
 
@@ -15,9 +15,11 @@ use crate::fx;
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, div_round, fx_div, fx_mul, saturate_wide};
 
 const CORNERS: u32 = 32;
-/// Circumradius of a polygon with the area of a disc of radius 1: `sqrt(t / sin t)` for an angle `t` between corners.
+/// Circumradius of a regular polygon with 32 corners and the area of a disc of radius 1: `sqrt(t / sin t)` with the
+/// angle `t` between neighbouring corners.
 const CORNER_RADIUS: Fx = fx!(1.003222080);
-/// Largest number of points of a cut ring: each edge of the other ring adds at most one point.
+/// Largest number of points of a cut ring. Both rings have at most 32 points, and each edge of the other ring adds at
+/// most one point.
 const POINTS: usize = 2 * CORNERS as usize;
 
 #[derive(Clone, Copy, Debug)]
@@ -64,8 +66,8 @@ impl Ring {
         }
     }
 
-    /// Ring of points widened by a radius. Corners are in fixed world directions, so that the ring of a disc does not
-    /// rotate.
+    /// Ring of the convex hull of `points`, widened by a radius. Corners are in fixed world directions, so that the
+    /// ring of a disc does not rotate with the disc.
     fn rounded(points: &[Vec2<Fx>], radius: Fx) -> Self {
         let radius = fx_mul(radius, CORNER_RADIUS);
         let corner = |index: u32| {
@@ -119,8 +121,8 @@ impl Ring {
             let middle = first + (*last - first).scale(fx!(0.5));
             return Some(Extent { size: first.distance(*last), centre: middle }).filter(|line| line.size > 0);
         }
-        // Twice the area with 64 fraction bits, and six times its first moments with 96. Points are within a few
-        // hundred metres, so that the sums fit.
+        // Twice the area with 64 fraction bits, and six times the first moments of the area with 96 fraction bits. The
+        // points are within a few hundred metres of the first one, so the sums fit.
         let (mut double, mut moment) = (0i128, [0i128; 2]);
         for pair in rest.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|point| {

@@ -1,10 +1,10 @@
-//! Ray cast against a shape: `o + t d` for the smallest `t` from 0 to 1.
+//! Ray cast against a shape: the point `o + t d` of the shape with the smallest `t` from 0 to 1.
 //!
 //! The outline of a core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about its
 //! vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`. The ray
 //! enters a circle about `p` half a chord before the ray's nearest point to `p`. Products are exact. `|e|` and `|d|`
-//! have a relative error of 1.5e-9, but this error only affects lengths up to the radius. Rays and segments may
-//! therefore be as long as the world.
+//! have a relative error of 1.5e-9, but are only multiplied by lengths up to the radius. The error is therefore small
+//! even for rays and segments as long as the world.
 
 #[cfg(test)]
 mod tests;
@@ -21,7 +21,7 @@ const ROUNDING: Grid = Grid::lit("0.000001");
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RayHit {
-    /// Fraction of the translation, 0 to 1, rounded down to 2^-32. For a ray of 2^30 m that is 0.25 m.
+    /// Fraction of the translation, 0 to 1, rounded down to a multiple of 2^-32: 0.25 m on a ray of 2^30 m.
     pub(crate) fraction: Fx,
     /// The fraction with more bits, to order two hits.
     pub(crate) order: Fraction,
@@ -51,7 +51,8 @@ pub(crate) fn contains_point(shape: &SupportShape, point: Vec2<Fx>) -> bool {
     overlap(shape, &SupportShape::point(point))
 }
 
-/// Fraction and normal at which a ray from outside comes within `radius` of the hull of `points`.
+/// Fraction and normal at which a ray from outside comes within `radius` of the hull of `points`. The ray starts at `o`
+/// and has the translation `d`.
 pub(in crate::collision) fn entry(
     points: &[Vec2<Grid>],
     radius: Grid,
@@ -59,12 +60,13 @@ pub(in crate::collision) fn entry(
     d: Vec2<Grid>,
 ) -> Option<(Fraction, Vec2<Unit>)> {
     let forward = direction(d)?;
-    // The shape is convex, so the ray enters where it hits a face from outside.
+    // A ray enters a convex shape through at most one face, so the first face found that the ray hits from outside is
+    // the entry.
     if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
         return Some(found);
     }
-    // Without a radius there are no circles. A ray may still hit a point, or the end of a segment when it runs along
-    // the segment.
+    // Without a radius, the vertices have no circles. But a shape of one or two vertices may be hit at a vertex: a
+    // point anywhere, and a segment at an end by a ray along the segment.
     if radius == 0 && points.len() > 2 {
         return None;
     }
@@ -125,7 +127,7 @@ fn enter_circle(
     (way <= whole).then(|| Fraction::ratio(way.max(0), whole))
 }
 
-/// `radius |v|` in units of 2^-56 m². The shift keeps the product within 128 bits.
+/// `radius |v|` in units of 2^-56 m². `direction` is the direction of `v`. The shift keeps the product within 128 bits.
 fn times_length(radius: Grid, v: Vec2<Grid>, direction: Vec2<Unit>) -> i128 {
     ((scaled_along(direction, v) >> 8) * i128::from(radius.to_bits())) >> (Unit::FRAC_NBITS - 8)
 }

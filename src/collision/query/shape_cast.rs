@@ -1,9 +1,9 @@
 //! Shape cast: B moved by `t v` touches A if the ray `t v` from the origin meets the Minkowski difference `A - B`. A
 //! shape cast is therefore a ray cast, without iteration.
 //!
-//! A moving shape stops at a distance of [`SKIN`] before contact. A surface that the shape slides along or leaves must
-//! not stop its next move. If the shape starts within the skin, or overlapping, only a movement against the normal is a
-//! hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
+//! A moving shape stops at the distance [`SKIN`] from A. Its next move must not be stopped by A if the shape slides
+//! along A or leaves A. Therefore, if the shape starts within the skin or overlaps A, only a movement against the
+//! normal is a hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
 
 use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
@@ -19,7 +19,8 @@ pub(crate) const SKIN: Fx = fx!(0.0001);
 /// 0.2 µm.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
-/// Right shift of a translation to the largest approach that counts as sliding: 2^-24 m per metre, plus 2^-24 m.
+/// A translation counts as sliding along a surface if it approaches the surface by at most 2^-24 times the larger
+/// component of the translation, plus 2^-24 m. The constant is the right shift for this factor.
 const SLIDING: u32 = 24;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +111,8 @@ fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_V
     (merged, count.max(1))
 }
 
-/// Whether the direction of `u` has a smaller angle than that of `v`, from 0 to below a full turn.
+/// Whether the angle of `u` is smaller than that of `v`. Angles are measured from the x axis, from 0 to below a full
+/// turn.
 fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
     let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
     match (lower_half(u), lower_half(v)) {

@@ -1,17 +1,18 @@
 //! Time of impact: when two moving, rotating shapes first come within a distance of each other.
 //!
 //! Conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996) along the axis
-//! `n` of the current separation. A vertex at `r` from its body's centre moves by
+//! `n` of the current separation. In the fraction `h` of the tick, a vertex at `r` from its body's centre moves along
+//! `n` by
 //!
 //! ```text
 //! n . (p(h) - p(0)) >= (n . d + theta n . perp(r)) h - theta^2 |r| h^2 / 2
 //! ```
 //!
-//! in the fraction `h` of the tick, for a displacement `d` and a rotation by `theta`. The separation along any axis is
-//! a lower bound of the true separation, so the shapes have no contact while these parabolas stay above the target. The
-//! linear term lets a body that slides, rolls or spins beside a surface advance freely. Root finding on separating axes
-//! (E. Catto, "Continuous Collision", GDC 2013) takes as few steps, but proves nothing about the time between two
-//! steps.
+//! where `d` is the displacement and `theta` the rotation of the body in the whole tick. The separation along any axis
+//! is a lower bound of the true separation, so the shapes have no contact as long as these parabolas keep the
+//! separation along `n` above the target. The linear term lets a body that slides, rolls or spins beside a surface
+//! advance freely. Root finding on separating axes (E. Catto, "Continuous Collision", GDC 2013) takes as few steps, but
+//! proves nothing about the time between two steps.
 //!
 //! Separation is signed: after contact it is the negative depth.
 
@@ -24,8 +25,8 @@ use crate::math::{Angle, Fx, Rot, TAU, Unit, Vec2, fx_mul, round_shift_wide, sat
 /// Largest distance in metres from the target at which a contact counts as found.
 pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 
-/// Largest number of steps. Faces that stay near the target while they rotate by a large part of a turn would need more
-/// steps.
+/// Largest number of steps before the search fails. Faces that stay near the target while they rotate by a large part
+/// of a turn would need more steps.
 const STEPS_MAX: u32 = 48;
 
 /// Largest number of steps of queries, which have policies other than [`StartPolicy::Protect`]. Queries are rare, so
@@ -34,14 +35,14 @@ const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians. With this limit and [`REACH_MAX`], `theta^2 |r|` fits its type.
 const TURN_MAX: Fx = fx!(1024);
-/// Largest reach in metres of a rotating shape.
+/// Largest distance in metres of a rotating shape's points from the centre of its body.
 const REACH_MAX: Fx = fx!(1024);
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
-    /// Centre of mass in the world.
+    /// World position of the centre of mass at the start of the tick.
     pub(crate) start: Vec2<Fx>,
-    /// Centre of mass in the world.
+    /// World position of the centre of mass at the end of the tick.
     pub(crate) end: Vec2<Fx>,
     /// Rotation in units of 2^-32 turn, counter-clockwise. May exceed a turn.
     pub(crate) turn: i64,
@@ -70,8 +71,8 @@ pub(crate) enum TimeOfImpact {
     /// [`StartPolicy::Report`], any overlap is too deep. With [`StartPolicy::Protect`], any contact of two shapes
     /// without an inner radius is too deep.
     Overlapped,
-    /// The search gave up, because it took too many steps, made no progress or a shape rotates too far. The shapes do
-    /// not come within the target before this fraction of the tick.
+    /// The search gave up, because it took too many steps, because it made no progress, or because a shape rotates too
+    /// far. Before this fraction of the tick, the shapes do not come within the target.
     Failed { fraction: Fx },
 }
 
@@ -89,10 +90,10 @@ pub(crate) enum StartPolicy {
 /// Time at which the surfaces of two shapes first come within `target` metres. A negative target is a depth. The
 /// support shapes are posed as at the start, each relative to its own body's centre of mass.
 ///
-/// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. A depth such as a
-/// quarter of B's inner radius lets the body pass, and the solver then resolves the overlap.
+/// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. With a negative
+/// target, such as minus a quarter of B's inner radius, the body passes the seam, and the solver resolves the overlap.
 ///
-/// Shapes that start within the target get another target. It is half-way between the initial separation (0 if the
+/// Shapes that start within the target get another target, which is half-way between the initial separation (0 if the
 /// separation is positive) and a depth of three quarters of the inner radius of B, or of A if B has no inner radius.
 /// The centre of B then does not pass the surface of A.
 pub(crate) fn time_of_impact(
@@ -132,9 +133,9 @@ pub(crate) fn normal_at(
 
 const OVERLAP_STEPS_MAX: u32 = 256;
 
-/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth. `None` if the shapes do not
-/// overlap, a shape rotates too far or the search takes too many steps. Two segments have a depth only if they cross,
-/// so they count as overlapping within 0.05 mm of each other.
+/// Fraction of the tick after which two shapes first overlap. At this time, the depth is at most 0.05 mm. `None` if the
+/// shapes do not overlap, a shape rotates too far or the search takes too many steps. Two segments have a depth only if
+/// they cross, so they count as overlapping within 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -244,8 +245,9 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet. For the far ends of the segment, a unit normal would
-/// have too few bits.
+/// If A is a segment and does not rotate, clips A to the square with half side `window` about `b`, the centre of B. B
+/// cannot meet the rest of the segment, and products of its far ends with a unit normal would have too large errors.
+/// `None` if no part of the segment is left. Returns other shapes unchanged.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
@@ -302,8 +304,8 @@ impl SweptShape {
         Posed { support: support.moved(centre), centre }
     }
 
-    /// Positions and speeds of the vertices along an axis, times `sign`. Without rotation the vertex nearest to the
-    /// other shape is enough.
+    /// Positions of the vertices along the axis `normal` and their speeds per tick, both times `sign`. If the shape
+    /// does not rotate, the vertex nearest to the other shape is enough.
     fn tracks(&self, posed: &Posed, normal: Vec2<Unit>, sign: i64) -> Tracks {
         let wide = normal.widen();
         let speed = wide.dot(self.displacement);
@@ -323,7 +325,8 @@ impl SweptShape {
     }
 }
 
-/// Each vertex is at `x + v h` after the fraction `h`, or behind this position by at most `curvature h^2`.
+/// Vertices `(x, v)` along an axis. After the fraction `h` of the tick, a vertex is at `x + v h - curvature h^2` or
+/// beyond.
 struct Tracks {
     count: usize,
     vertices: [(Fx, Fx); 8],
@@ -350,8 +353,8 @@ fn positive_part(gap: Fx, speed: Fx, curvature: Fx, end: Fx) -> Fx {
         return Fx::ZERO;
     }
     let at_end = gap.saturating_add(fx_mul(speed.saturating_sub(fx_mul(curvature, end)), end));
-    // The function is concave, so it is positive between any two points where it is positive. A few units cover the
-    // rounding.
+    // The function is concave, so it is positive between any two points where it is positive. The four units cover
+    // rounding errors.
     if at_end > Fx::DELTA * 4 {
         return end;
     }

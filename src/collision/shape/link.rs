@@ -14,7 +14,8 @@ pub(crate) struct Link {
     pub(crate) directions: Directions,
 }
 
-/// Directions of a link and its neighbours. `None` if the neighbour does not exist or a link has no length.
+/// Directions of a link and its neighbours. A direction is `None` if the link or neighbour does not exist or has no
+/// length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Directions {
     pub(crate) before: Option<Vec2<Unit>>,
@@ -44,8 +45,9 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
-    /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of the neighbour but not
-    /// of this link counts only up to the neighbour's far end. Beyond that end, it may be on the left of the chain.
+    /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of a neighbour but on the
+    /// left of this link counts only up to the neighbour's far end. Beyond that end, the place may be on the left of
+    /// the chain.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, sides, .. } = *self;
         let is_before = (place - a).dot(a.towards(b)) < 0;

@@ -29,7 +29,7 @@ pub(crate) enum Outline {
 }
 
 impl Outline {
-    /// Distance in metres of the surface from the vertices.
+    /// Radius in metres by which the point or polygon is widened. 0 for a segment or link.
     pub(crate) fn radius(&self) -> Fx {
         match self {
             Outline::Circle { radius } => widen(*radius),
@@ -168,7 +168,7 @@ impl Hull {
         hull
     }
 
-    /// The ends are given in the capsule's own frame.
+    /// Rotates a capsule, whose ends `a` and `b` are given in its own frame.
     fn turn_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>, rotation: Rot) {
         let [a, b] = [a, b].map(|end| rotation.apply(end.narrow()));
         self.place_ends(a, b, rotation.apply(self.direction));
@@ -246,7 +246,8 @@ impl Hull {
 }
 
 impl PosedShape {
-    /// `rotation` is the rotation of the body, which callers compute once for all of its shapes.
+    /// Poses a shape of a body. `rotation` is the rotation of the body, which callers compute once for all of its
+    /// shapes.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
@@ -288,7 +289,7 @@ impl PosedShape {
         self.bounds = self.bounds.translated(by);
     }
 
-    /// Radius of a disc inside a geometry. 0 for a segment or link.
+    /// Radius in metres of a disc inside a geometry. 0 for a segment or link.
     pub(crate) fn inner_radius(geometry: &Geometry) -> Fx {
         SupportShape::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }

@@ -1,7 +1,8 @@
 //! Support shape for queries: a convex *core* of 1 to 8 points, widened by a radius.
 //!
 //! Points are on a grid of 2^-28 m (3.7 nm), so that sums of two products of differences are exact in 128 bits anywhere
-//! in the world: coordinates have at most 2^60 units, differences of differences 2^62, and a sum of two products 2^125.
+//! in the world: coordinates are at most 2^60 units, differences of differences at most 2^62 units, and a sum of two
+//! products of such differences is at most 2^125.
 
 use fixed::FixedI64;
 use fixed::types::extra::U28;
@@ -15,7 +16,8 @@ use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide,
 /// A coordinate or length on the grid, in metres.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// Larger than any radius in metres. Products of a radius and a length in `query/ray.rs` fit 128 bits.
+/// Upper limit of the radius in metres, larger than that of any shape. With this limit, products of a radius and a
+/// length in `query/ray.rs` fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
 /// Fraction bits of a world coordinate beyond those of the grid.
@@ -222,8 +224,8 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
 /// Distance of a point from a line. `cross` is the cross product of a vector along the line with the vector from the
 /// line to the point, and `scaled_length` the length of the vector along the line, from [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // A cross product above 2^97 gives a height beyond any distance of interest, so losing a few of its bits does no
-    // harm.
+    // A cross product above 2^97 gives a height above 180 m. No result needs the last bits of such a height, so the
+    // product may lose bits.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {

@@ -61,7 +61,7 @@ impl<'a> Costs<'a> {
             | Command::EnableJoint { joint }
             | Command::DisableJoint { joint } => {
                 let bodies = self.world.joint(*joint).map(|joint| joint.def().bodies());
-                // A joint added in this tick may connect any two bodies.
+                // A joint added in this tick may connect any two bodies, so it is charged for all shapes.
                 let joined = bodies.map_or(self.shapes(), |(a, b)| self.joined(&[a, b]));
                 VISIT_WORK.saturating_add(joined)
             }
@@ -74,7 +74,8 @@ impl<'a> Costs<'a> {
                 SHAPE_WORK + self.removal() + self.shapes_beside(shape)
             }
             Command::SetKind { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.removal(),
-            // The world itself counts its search for overlaps, and the joints whose bodies it wakes.
+            // The world itself counts the search for overlaps that these commands cause, and the joints whose bodies
+            // they wake.
             Command::SetBody { body, .. }
             | Command::SetMass { body, .. }
             | Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body),
@@ -120,7 +121,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Work units of comparing the shapes of two bodies again after a change of their joint.
+    /// Work units of comparing the shapes of two bodies again after a change of their joint: one for each shape.
     fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
         bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
     }

@@ -52,7 +52,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
         let at = PLACES[round % PLACES.len()];
         assert_eq!(orientation(place(a, at), place(b, at), place(c, at)), expected, "{a:?} {b:?} {c:?}");
     }
-    // A point one unit above a line across the whole world, and a point on it.
+    // A line across the whole world, a point one unit above this line, and a point on the line.
     let (low, high) = (Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, Fx::MAX));
     let above = Vec2::new(Fx::ZERO, Fx::DELTA);
     assert_eq!(orientation(low, high, above), Orientation::CounterClockwise);

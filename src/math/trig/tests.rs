@@ -65,7 +65,8 @@ fn symmetries_are_exact() {
 fn cosine_and_sine_are_on_the_circle() {
     for angle in angles() {
         let (sin, cos) = (i64::from(sine(angle)), i64::from(sine(angle.wrapping_add(QUARTER))));
-        // The tolerance is twice the largest error of the vector, 0.79 sqrt 2 units.
+        // The length of the vector has an error of at most 0.79 sqrt 2 units of 2^-30, and the square of the length has
+        // twice this error.
         let excess = sin * sin + cos * cos - (1 << 60);
         assert!(excess.abs() * 100 <= 224 << 30, "{angle}: {excess}");
     }

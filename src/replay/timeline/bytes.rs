@@ -18,7 +18,7 @@ pub const KEYFRAMES_MAGIC: [u8; 8] = *b"\x89L2K\r\n\x1a\n";
 /// Version of the layout.
 pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
 
-/// Maximum bytes of all keyframes together. Their file then stays below
+/// Maximum size of all keyframes together, in bytes. It keeps the file of keyframes below
 /// [`DECODE_BYTES_MAX`](crate::codec::DECODE_BYTES_MAX).
 pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 
@@ -192,7 +192,7 @@ pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u
     ENVELOPE.seal(crate::SEMANTICS, &body)
 }
 
-/// Decodes the body, without checking the saves.
+/// Decodes the body. Checks all of it except the saves, and whether their ticks have checkpoints in the replay.
 pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, KeyframesError> {
     let opened = ENVELOPE.open(bytes)?;
     if opened.semantics != crate::SEMANTICS {
@@ -216,7 +216,8 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-/// Inserts the saves of a file into `keyframes`, which removes some of them if they exceed the memory budget.
+/// Inserts the saves of a file into `keyframes`. If they exceed the memory budget, `keyframes` doubles its interval and
+/// removes some of them.
 pub(super) fn place(body: Body, ticks: u64, keyframes: &mut Keyframes<'_>) -> Result<(), KeyframesError> {
     let mut position = keyframes.first().position.clone();
     for (tick, Save(save)) in body.saves {

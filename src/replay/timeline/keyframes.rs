@@ -19,7 +19,7 @@ impl Keyframe<'_> {
     }
 }
 
-/// Keyframes by tick, at multiples of the interval. Some may be missing.
+/// Keyframes by tick, at multiples of the interval. Some multiples may have no keyframe.
 #[derive(Debug)]
 pub(super) struct Keyframes<'a> {
     /// Keyframe of tick 0, which is never removed.

@@ -1,11 +1,12 @@
 //! [`Timeline`]: a replay that can seek to any tick, forwards and backwards.
 //!
-//! A seek simulates forwards from a saved state:
+//! A seek simulates forwards from the latest saved state up to the tick, or from the current tick if that is nearer.
+//! The saved states are:
 //!
 //! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as canonical bytes. When they exceed their memory
 //!   budget, the interval doubles and every second keyframe is removed.
 //! - A *trail* of saves before the current tick, made while stepping backwards. With a trail, the ticks between two
-//!   keyframes are simulated once, and not again for each step.
+//!   keyframes are simulated once, and not again for each step backwards.
 
 mod bytes;
 mod keyframes;
@@ -48,8 +49,8 @@ pub struct TimelineOptions {
     /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
     /// blocks, so that every keyframe is at a checkpoint and can be compared with it.
     pub interval: u32,
-    /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of this
-    /// amount in addition.
+    /// Maximum size of all keyframes together in bytes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a
+    /// quarter of this amount in addition.
     pub bytes: usize,
 }
 
@@ -86,8 +87,8 @@ pub enum SeekError {
     /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a limit, or lead to
     /// another state.
     Replay(Verdict),
-    /// The state of a keyframe does not match the replay. The keyframe comes from a wrong file, or saving and loading
-    /// this game loses state.
+    /// A keyframe cannot be decoded, or its state does not match the checkpoint of the replay. Either the keyframe
+    /// comes from a wrong file, or saving and loading this game loses state.
     Keyframe {
         /// Tick of the keyframe.
         tick: u64,
@@ -147,7 +148,7 @@ pub struct Timeline<'a, G: Game> {
     simulated: u64,
     /// The first tick that cannot be reached, and the reason.
     failed: Option<(u64, Verdict)>,
-    /// Whether the state of the game is not the state of the current tick.
+    /// Set if a failed step has left the game in a state that is not that of the current tick.
     is_wrong: bool,
 }
 
@@ -191,7 +192,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.replay.ticks()
     }
 
-    /// The tick up to which the replay has been played without a gap, with equal checkpoints.
+    /// The tick up to which every tick has been simulated, and every checkpoint was equal to the one in the file.
     #[must_use]
     pub fn played(&self) -> u64 {
         self.played
@@ -214,8 +215,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.keyframes.iter().map(|frame| frame.position.tick)
     }
 
-    /// Seeks to a tick. A tick played before usually costs less than one [`interval`](Self::interval) of simulation.
-    /// Checkpoints on the way are compared.
+    /// Seeks to a tick. Going to a tick that was played before usually costs less than one [`interval`](Self::interval)
+    /// of simulation. The checkpoints of the simulated ticks are compared with the file.
     ///
     /// # Errors
     /// [`SeekError`]. If playing a tick fails, the timeline stays at the last tick played, and earlier ticks remain
@@ -284,9 +285,10 @@ impl<'a, G: Game> Timeline<'a, G> {
 
     /// Replaces the keyframes by those of a file from [`Timeline::keyframes_to_bytes`].
     ///
-    /// The interval becomes a multiple of the interval in the file. When a seek uses a keyframe, its state has to match
-    /// the replay's checkpoint. This comparison does not verify that the inputs lead to that state: see
-    /// [`Timeline::played`].
+    /// The interval becomes the smallest multiple of the file's interval that is not below the current interval. The
+    /// saves are not checked here: when a seek restores one, the seek fails if the state does not match the replay's
+    /// checkpoint. A matching state does not prove that the inputs lead to this state. [`Timeline::played`] is the tick
+    /// up to which this has been verified.
     ///
     /// # Errors
     /// [`KeyframesError`] for other bytes, and for keyframes of another replay. The current keyframes are then

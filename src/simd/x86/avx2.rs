@@ -334,7 +334,8 @@ unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
     product
 }
 
-/// The result, or the limit with the sign of `sign` in lanes where `overflows` is negative.
+/// In lanes where `overflows` is negative, the smallest or largest `i32`, with the sign of `sign`. In other lanes,
+/// `result`.
 #[inline(always)]
 fn limited(result: __m256i, overflows: __m256i, sign: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.

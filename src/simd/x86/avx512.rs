@@ -17,7 +17,7 @@ use super::records::Records;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512;
 
-/// Bits of a mask that belong to lanes. The other bits are undefined.
+/// Bits of a mask that belong to lanes: those for the lower halves of the numbers. The other bits are undefined.
 const LANES: u16 = 0x5555;
 
 impl Lanes<WIDTH> for Avx512 {
@@ -186,7 +186,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn narrow<const SHIFT: i32>(a: __m512i) -> __m512i {
-        // The lower half is the same after a logical and an arithmetic shift.
+        // A logical and an arithmetic shift give the same lower half.
         Self::shift_down::<SHIFT>(with_half::<SHIFT>(a))
     }
 
@@ -292,7 +292,7 @@ unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {
     product
 }
 
-/// The result, or the limit with the sign of `sign` in lanes where `overflows` is set.
+/// In lanes where `overflows` is set, the smallest or largest `i32`, with the sign of `sign`. In other lanes, `result`.
 #[inline(always)]
 fn limited(result: __m512i, overflows: __mmask16, sign: __m512i) -> __m512i {
     // SAFETY: see `Avx512`.

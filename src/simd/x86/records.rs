@@ -39,15 +39,15 @@ impl<'a, T> Records<'a, T> {
 
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
-        // A volatile read. Otherwise the compiler would extract the index from the vector in `new`, on the execution
-        // units that the kernels need.
+        // A volatile read: otherwise the compiler would extract the index from the vector that `new` has loaded, which
+        // occupies the execution units that the kernels need.
         let at: *const u32 = &self.at[lane];
         // SAFETY: the index can be read, and `new` has checked that it is within the slice.
         unsafe { self.all.get_unchecked(at.read_volatile() as usize) }
     }
 
-    /// Calls `each` with every body except the ground. Most batches do not contain the ground. In these batches, no
-    /// lane is checked.
+    /// Calls `each` with the lane and the record of every body except the ground. Most batches do not contain the
+    /// ground, and then no lane is compared with it.
     #[inline(always)]
     pub(super) fn each_but_the_ground(&self, mut each: impl FnMut(usize, &'a T)) {
         let has_ground = self.has_ground();

@@ -15,11 +15,12 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// Makes contacts stiffer: -1 in lanes in which impulses do not move one of the bodies, -2 if in addition the other
-    /// body has an impact.
+    /// -1 in lanes in which impulses do not move one of the bodies: such contacts are stiffer. -2 if in addition the
+    /// other body has an impact ([`super::ActiveContact::is_impact`]) in any of its contacts: overlaps that approach
+    /// faster than `IMPACT_SPEED` (`solve.rs`) are then rigid. 0 in other lanes.
     pub(super) immovable: Ints<N>,
-    /// -1 in lanes with two points. In other lanes of a batch of two points, the second point is a copy of the first
-    /// point, without an impulse.
+    /// -1 in lanes with two points. If a batch has contacts with two points, each contact with one point gets a copy of
+    /// this point, without an impulse, as its second point.
     pub(super) both: Ints<N>,
     pub(super) points: [Point<N>; 2],
     /// The friction row, half-way between the points. One row is enough, because both points lie on one line along the
@@ -55,7 +56,7 @@ pub(super) struct Point<const N: usize> {
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
     pub(super) e_b: Ints<N>,
-    /// Velocity changes by an impulse of 1, `g n_x`, `g n_y` and `f`, of each body.
+    /// Velocity changes of each body by an impulse of 1: `g n_x`, `g n_y` and `f`.
     pub(super) a: [Ints<N>; 3],
     pub(super) b: [Ints<N>; 3],
 }

@@ -8,7 +8,8 @@ use crate::math::{Rate, Shift};
 pub(in crate::solver) struct Constants {
     /// Sub-steps per second, in the format of [`Rate`].
     pub(super) rate: i32,
-    /// Largest gap or overlap for which the speed that removes it in a sub-step fits the format of speeds.
+    /// Largest gap or overlap, in the format of [`Shift`], for which the speed that removes it in a sub-step fits the
+    /// format of speeds.
     pub(super) separation_max: i32,
     pub(super) slop: i32,
     pub(super) push_speed: i32,

@@ -27,8 +27,8 @@ use super::{Constants, Contacts};
 use crate::math::{Rate, Shift, Speed, Unit, mul};
 use crate::simd::{Ints, Lanes};
 
-/// Gap in metres below which a point bounces together with another point that hits. If only the point that hits
-/// bounced, a box that lands not quite flat would spin.
+/// Gap in metres below which a point bounces together with another point of its contact that hits. If only the point
+/// that hits bounced, a box that lands not quite flat would spin.
 const NEAR: Shift = Shift::lit("0.005");
 
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) approach: [Ints<N>; 2],
     /// For each point that bounces, `a (f - 1/2)` plus one unit of [`Speed`].
     pub(super) drift: [Ints<N>; 2],
-    /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
+    /// For each point that hits in this sub-step, `s' / h`: the speed that opens the gap `s'` within a sub-step.
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where its normal impulse is positive after the bias pass.
     touches: [Ints<N>; 2],
@@ -51,8 +51,7 @@ pub(super) struct Impacts<const N: usize> {
     /// late only if it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
     pub(super) slide: Ints<N>,
-    /// `f` times the tangential velocity: the part of the sliding that precedes the impact, during which friction does
-    /// not act.
+    /// `f` times the tangential velocity `slide`: the sliding before the impact, when friction does not act yet.
     pub(super) slip: Ints<N>,
 }
 
@@ -90,7 +89,7 @@ impl<const N: usize> Impacts<N> {
 
 #[derive(Clone, Copy)]
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
-    /// `s' / h`, or 0 for a point that does not hit.
+    /// `s' / h`, or 0 for a point that does not hit in this sub-step.
     pub(super) rebound: L::Int,
     /// See [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse
     /// of the late point. In the next sub-step the point approaches and may bounce.
@@ -155,7 +154,7 @@ impl Operation<Contacts> for PredictImpacts {
                 L::store(forced, &mut extras.impacts.forced[i]);
             }
             fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
-            // Shapes that rest on each other may separate for single sub-steps, at less than the threshold.
+            // Shapes that rest on each other may separate in single sub-steps, more slowly than the threshold.
             let gap = L::greater(L::load(&point.separation), L::splat(0));
             let least = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
             let is_late = L::both(elastic, L::greater(v, L::sub(least, L::splat(1))));
@@ -217,7 +216,7 @@ impl<const N: usize> ContactExtras<N> {
     }
 }
 
-/// `f`, from 0 to 1. `closing` is `s / h`, and `v` is negative.
+/// The time of impact `f`, clamped to the range from 0 to 1. `closing` is `s / h`, and `v` is negative.
 fn time_of_impact(closing: Speed, v: Speed) -> Unit {
     let one = i64::from(Unit::ONE.to_bits());
     let time = i64::from(closing.to_bits()) * one / -i64::from(v.to_bits());
@@ -227,11 +226,11 @@ fn time_of_impact(closing: Speed, v: Speed) -> Unit {
 
 #[derive(Clone, Copy, Debug)]
 struct Impact {
-    /// `va`.
+    /// `va`: the velocity of approach at the impact.
     approach: Speed,
     /// `a (f - 1/2)`, plus one unit of [`Speed`].
     drift: Speed,
-    /// `vs`.
+    /// `vs`: the velocity after the impact.
     after: Speed,
 }
 
@@ -278,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Gravity in a sub-step causes no rebound.
+    /// The velocity that gravity adds in a sub-step causes no rebound.
     #[test]
     fn a_point_at_rest_does_not_rebound() {
         let v = Speed::lit("-0.0417");

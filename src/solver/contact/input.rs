@@ -22,8 +22,8 @@ pub(crate) struct ActiveContact {
     /// Slots of the bodies.
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
-    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no useful initial
-    /// guess.
+    /// Whether the shapes may approach each other at more than 5 m/s. The impulses of the last tick are then no useful
+    /// initial guess.
     pub(crate) is_impact: bool,
     /// Whether the contact has a hit event, which reports the impulse of the tick.
     pub(crate) is_hit: bool,
@@ -54,7 +54,7 @@ pub(super) struct Input {
     pub(super) features: [u16; 2],
     /// Whether one of the bodies is wedged: see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
-    /// Whether one of the bodies has an impact, in this contact or in another contact.
+    /// Whether one of the bodies has an impact ([`ActiveContact::is_impact`]), in this contact or in another one.
     pub(super) impact: bool,
     pub(super) count: u8,
     pub(super) extras: bool,
@@ -65,11 +65,11 @@ pub(super) struct Input {
     /// Vectors from the centres of mass of A and B to the origin of the contact, its first point.
     pub(super) to_origin: Quad,
     pub(super) anchors: Quad,
-    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. Then the number
-    /// of points.
+    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The last number
+    /// is the number of points.
     pub(super) carried: Quad,
     /// The separations of both points in the format of a step, the friction, and the gap between the surfaces half-way
-    /// between the points, 0 for an overlap.
+    /// between the points. The gap is 0 for an overlap.
     pub(super) rest: Quad,
 }
 
@@ -123,7 +123,7 @@ impl ContactSource<'_> {
             }
         }
         prospects[GROUND as usize] = Prospect::default();
-        // In a world at rest no contact is cold.
+        // If no body is cold, as in a world at rest, no contact is cold.
         if prospects.iter().any(|prospect| prospect.is_cold()) {
             colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
         }
@@ -156,7 +156,7 @@ impl ContactSource<'_> {
         let memory = &self.contacts[pair.contact as usize];
         let KeptManifold { arm_a: to_a, arm_b: to_b, to_second, .. } = memory.kept;
         let gap = match memory.kept.separations {
-            // A manifold at a time of impact has no gap.
+            // A manifold that cannot be kept, such as one at a time of impact, counts as one without a gap.
             _ if !memory.kept.can_be_kept() => Step::ZERO,
             [first, second] if manifold.count() == 2 => (first >> 1) + (second >> 1),
             [first, _] => first,
@@ -199,7 +199,7 @@ impl ContactSource<'_> {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
-    /// The bodies that impulses change. The ground replaces a body that impulses do not change. A body counts as
+    /// The bodies that impulses change, with the ground in place of a body that they do not change. A body counts as
     /// changed even if its share of an impulse rounds to 0: another contact may change the body, and must not get the
     /// same colour.
     #[inline(always)]

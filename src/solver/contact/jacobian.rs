@@ -6,7 +6,7 @@ use super::overflow_policy::OverflowPolicy;
 use crate::simd::{Ints, Lanes, VelocityW};
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// `J v` as a speed.
+    /// The relative velocity `J v` along a row, as a speed.
     #[inline(always)]
     pub(super) fn velocity(
         &self,
@@ -18,7 +18,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 
     /// Changes the velocities by impulses `d`, which must be at most 512 m/s, so that no sum overflows. `SHIFT` is the
-    /// number of additional fraction bits of a gain times an impulse.
+    /// number of fraction bits by which the product of a gain and an impulse exceeds a speed.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
         let VelocityW { x, y, turn } = self.a;

@@ -1,7 +1,7 @@
 //! Contacts: one row along the normal for each point, and one along the tangent for both points.
 //!
-//! With the rows and gains of `row.rs`, the separation `s0` at the start of the tick and the displacements `dx` since
-//! then, for each contact of a batch:
+//! The equations below use the rows and gains of `row.rs`, the separation `s0` at the start of the tick, and the
+//! displacements `dx` since then. They apply to each contact of a batch:
 //!
 //! ```text
 //! J  = (-n, -eA, n, eB)                                  the form of the rows along the normal and the tangent
@@ -69,9 +69,9 @@ const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if neither of its bodies has an initial guess of the impulses on it. A body has no guess if none
-/// of its contacts had points in the last tick, or if an impact may drive the body between two walls. Cold contacts
-/// need more iterations.
+/// A contact is cold if neither of its bodies has an initial guess of the impulses on this body. A body has no guess if
+/// none of its contacts had points in the last tick, or if an impact may drive the body between two walls. Cold
+/// contacts need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,

@@ -28,14 +28,15 @@ pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
 
 const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
 const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
-/// Largest factor between a separation and a speed in unchecked contacts.
+/// Largest factor, in 1/s, between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
 
-/// Unchecked speeds and impulses (64 m/s) and displacements (2 m) are below 2 to this power in units of their formats.
+/// In unchecked contacts, the bits of a velocity or impulse as a [`Speed`] (below 64 m/s) and of a displacement as a
+/// [`Shift`] (below 2 m) are both below 2 to this power.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Unchecked impulse changes (4 m/s) and separations (1/8 m) are below 2 to this power in units of the format of speeds
-/// and of displacements.
+/// In unchecked contacts, the bits of an impulse change as a [`Speed`] (below 4 m/s) and of a separation as a [`Shift`]
+/// (below 1/8 m) are both below 2 to this power.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
@@ -55,9 +56,9 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn see_impulse(&mut self, _: L::Int) {}
     #[inline(always)]
     fn see_separation(&mut self, _: L::Int) {}
-    /// `J v` as a speed.
+    /// The relative velocity `J v` along a row, as a speed.
     fn speed(&mut self, wide: L::Wide) -> L::Int;
-    /// A friction limit.
+    /// A friction limit as a speed, from friction ratios times impulses.
     fn limit(wide: L::Wide) -> L::Int;
     fn add(a: L::Int, b: L::Int) -> L::Int;
     fn sub(a: L::Int, b: L::Int) -> L::Int;
@@ -68,7 +69,7 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int;
     /// Changes velocities by impulses `d`.
     fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int);
-    /// Changes velocities by accumulated impulses.
+    /// Changes velocities by accumulated impulses, in a warm start.
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
@@ -153,8 +154,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> 
     }
 }
 
-/// Applies impulses of more than 512 m/s. Such impulses occur when a friction limit shrinks or a shape under load is
-/// released.
+/// Applies impulses of more than 512 m/s in steps of at most 512 m/s. Such impulses occur when a friction limit shrinks
+/// or a shape under load is released.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,
@@ -171,7 +172,7 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Does not check sums, but records whether all numbers were within their bounds.
+/// Does not check single sums, but records whether all numbers were within their bounds.
 pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
     /// Bitwise OR of the numbers that must be within the bound of [`LARGE_BITS`], with the bound added to each. The
     /// bound is a power of two, so a number within the bound sets no bit at or above twice the bound.

@@ -14,9 +14,9 @@ use crate::math::Unit;
 use crate::simd::{Kernel, Lanes, Layout, Machine, Quad, Scalar, prefetch};
 use crate::threads::Threads;
 
-/// Prefetch distance in batches, for the touching pairs.
+/// Prefetch distance, in batches, for the active contacts ([`ActiveContact`](super::ActiveContact)).
 const PAIRS_AHEAD: usize = 4;
-/// Prefetch distance in batches, for the manifolds and contacts of the pairs.
+/// Prefetch distance, in batches, for the manifolds and the contacts of the state.
 const MANIFOLDS_AHEAD: usize = 2;
 
 impl ContactSet {

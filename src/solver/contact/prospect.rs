@@ -41,7 +41,8 @@ impl Prospect {
         self.flags & Self::CONTACT != 0 && !self.has_guess()
     }
 
-    /// Whether the impulses of the last tick are an initial guess: a contact had points, and the body is not wedged.
+    /// Whether the impulses of the last tick are a useful initial guess: a contact of the body had points, and the body
+    /// is not wedged.
     pub(super) fn has_guess(self) -> bool {
         self.flags & Self::WARM != 0 && !self.is_wedged()
     }

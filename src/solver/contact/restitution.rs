@@ -23,7 +23,7 @@ use crate::math::{Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, a tall box
-/// that is dropped flat would gain a third of its energy, and spin. For boxes with an aspect ratio of up to 3, an
+/// that is dropped flat would gain a third of its energy, and spin. For boxes with an aspect ratio of up to 3, each
 /// iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
 
@@ -133,7 +133,7 @@ impl<const N: usize> Rebound<N> {
     const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
-/// The share of the rebound in a lane at which the contact's impulses in the sub-step add no energy:
+/// The share of the rebound in a lane at which the contact's impulses in the sub-step add no energy. It satisfies:
 ///
 /// ```text
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
@@ -167,8 +167,8 @@ fn share_without_gain<const N: usize>(
         none += inverse * at(old) * (at(before) + approach);
         all += inverse * at(new) * (at(after) + approach);
     }
-    // Without a rebound, the contact adds energy if another contact has driven its shapes apart. A smaller impulse then
-    // adds less.
+    // Even without a rebound, the contact adds energy (`none` is positive) if another contact has driven its shapes
+    // apart. The full rebound is then allowed if it adds no more energy than that.
     if all <= none.max(0) || extras.restitution.0[lane] > Unit::ONE.to_bits() {
         Unit::ONE.to_bits()
     } else if none >= 0 {

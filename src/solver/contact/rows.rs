@@ -52,7 +52,7 @@ impl<const N: usize> Denominators<N> {
 impl<const N: usize> Denominator<N> {
     const NONE: Self = Denominator { inverse: Ints::ZERO, whole: Ints::ZERO, part: Ints::ZERO };
 
-    /// `p = L / D`.
+    /// The impulse `p = L / D` of an accumulated `L`.
     #[inline(always)]
     pub(super) fn impulse<L: Lanes<N>>(&self, lambda: L::Int) -> L::Int {
         L::narrow::<UNIT>(L::mul(L::load(&self.inverse), lambda))

@@ -28,19 +28,19 @@ use super::{Constants, Contacts, TANGENT_MAX};
 use crate::math::{Rate, Shift, Speed, Unit};
 use crate::simd::{Ints, Lanes};
 
-/// Largest number of rounds in which the two points of a contact are solved against each other. With a single round, an
+/// Maximum number of rounds in which the two points of a contact are solved against each other. With a single round, an
 /// impact would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm instead of 1 mm.
-/// In a pile at rest one round is usually enough: a pyramid of 5050 boxes takes a tenth more time than with a limit of
-/// one round.
+/// In a pile at rest one round is usually enough, so that the limit of four rounds costs little: a pyramid of 5050
+/// boxes takes a tenth more time than with a limit of one round.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
 /// Normal velocity, in m/s, below which an overlap with a body that no impulse moves is rigid, if the other body has an
-/// impact. A soft contact would remove only a part of the approach velocity. Without an impact, the velocity comes from
-/// other constraints, against which a rigid contact would work: a wheel on a fixed axle that overlaps the ground would
-/// shake.
+/// impact ([`super::ActiveContact::is_impact`]). A soft contact would remove only a part of the approach velocity. If
+/// the other body has no impact, the velocity comes from other constraints, against which a rigid contact would work: a
+/// wheel on a fixed axle that overlaps the ground would shake.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
 /// Order in which the two points of a contact are solved. Solving the first point turns the body a little before the
@@ -93,7 +93,7 @@ impl<P: SolverPass> Operation<Contacts> for Solve<P> {
 }
 
 struct Solved<L: Lanes<N>, const N: usize> {
-    /// The points in the order in which they were solved, and their impulses in this order.
+    /// Indices of the points in the order in which they were solved. `normal_lambdas` has the same order.
     places: [usize; 2],
     normal_lambdas: [L::Int; 2],
     tangent_lambda: L::Int,
@@ -259,7 +259,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             if !L::any(unsettled) {
                 break;
             }
-            // Which contacts share a batch must not affect the number of faults.
+            // Faults count only in unsettled lanes, because their number must not depend on the contacts that share a
+            // batch.
             policy.count_faults_in(unsettled);
             one = self.solve(first, [one, two], unsettled, pair, policy);
             let old = two;
@@ -297,7 +298,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
-            // The relax pass leaves out a point with a gap and without an impulse. If it slowed the approach before the
+            // The relax pass leaves out a point with a gap and without an impulse. If it slowed such a point before the
             // gap is closed, a ball would rebound from above the floor.
             Pass::Relax => {
                 let approaches = L::both(gap, L::greater(L::splat(1), rebound));

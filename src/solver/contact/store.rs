@@ -48,7 +48,7 @@ impl<const N: usize> Records<N> {
         self.wedged = [false; N];
     }
 
-    /// Puts a contact into the next lane.
+    /// Puts a contact into `lane`, which must be the first lane without a contact.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;
@@ -65,7 +65,7 @@ impl<const N: usize> Records<N> {
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// Number of lanes with a contact, or `None` if a contact has a wedged body.
+    /// Number of lanes with a contact, or `None` if a contact has a wedged body (`Prospect::is_wedged`).
     #[inline(always)]
     pub(super) fn unwedged_len(&self) -> Option<usize> {
         (self.wedged == [false; N]).then_some(self.len as usize)
@@ -79,8 +79,8 @@ impl<const N: usize> Records<N> {
     }
 
     /// The impulses of each point along the normal and the tangent, for the warm start in the next tick. Also writes
-    /// the impulses back to the batch, because the next tick may reuse the batch. The impulses in the batch are rounded
-    /// as if the batch were filled from the state.
+    /// them back to the batch, because the next tick may reuse the batch. They are rounded there as if the batch were
+    /// filled from the state.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;
@@ -110,7 +110,8 @@ impl<const N: usize> Records<N> {
     }
 }
 
-/// The share of each point in the tangential impulse: one half, unless the friction limit of a point is lower.
+/// The share of each point in the tangential impulse: one half, unless the friction limit of a point is lower. Such a
+/// point gets its limit, and the other point gets the rest.
 #[inline(always)]
 fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int; 2] {
     let whole = L::load(&batch.tangent_lambda);

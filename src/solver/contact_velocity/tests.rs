@@ -1,5 +1,5 @@
-//! The warm start applies the velocity changes that contacts caused in the last sub-step. `world::tests` compares these
-//! changes with the changes that the accumulated impulses cause, in whole worlds (`contact_velocity_error`).
+//! The warm start applies the velocity changes that contacts caused in the last sub-step. For whole worlds,
+//! `world::tests` compares these changes with those that the accumulated impulses cause (`contact_velocity_error`).
 
 use std::vec::Vec;
 

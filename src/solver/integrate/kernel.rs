@@ -68,7 +68,7 @@ fn one_by_one(
     }
 }
 
-/// Limits of components. A velocity whose components are within these limits is within the speed limit.
+/// Limits of the components of a velocity. A velocity within these limits is within the speed limit.
 #[derive(Clone, Copy)]
 struct SpeedLimits {
     on_axis: i32,
@@ -82,7 +82,7 @@ fn on_axis(speed_max: Speed) -> i32 {
 }
 
 /// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a locked
-/// axis or may be above a limit.
+/// axis or may exceed the speed limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],
@@ -116,7 +116,7 @@ fn velocities<L: Lanes<N>, const N: usize>(
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
-    // Subtracting half a unit turns rounding to nearest into rounding down.
+    // Subtracting half a unit of the result turns rounding to nearest into rounding down.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }

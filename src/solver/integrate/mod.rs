@@ -142,8 +142,8 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Both summands are within ±16 m, so that the sum does not saturate. The sum is out of range only below 32
-            // ticks per second, if impulses have raised a speed above the speed limit.
+            // Both summands are within ±16 m, so that the sum does not saturate. It exceeds `SHIFT_MAX` only below 32
+            // ticks per second, and only if impulses have raised a speed above the speed limit.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);
@@ -167,9 +167,9 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit exceeds 512 m/s. The
-/// shortening therefore matters only if the force reverses the velocity of the body: the final velocity is then lower
-/// than it would be without the shortening.
+/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit exceeds 512 m/s, so the
+/// shortening matters only if the force reverses the velocity of the body: the final velocity is then lower than it
+/// would be without the shortening.
 #[cold]
 fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
     let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));

@@ -53,7 +53,7 @@ impl SubStep {
     #[inline(always)]
     pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
         let double = L::splat(2 * self.rate);
-        // The product is off by at most half a unit, and rounding adds another half.
+        // The product is off by at most half a unit, and its rounding adds at most another half.
         let q = L::narrow::<31>(L::mul(speed, L::splat(self.coarse)));
         let dividend = L::add(L::low(L::mul(speed, L::splat(64))), L::splat(self.rate));
         let rest = L::sub(dividend, L::low(L::mul(q, double)));

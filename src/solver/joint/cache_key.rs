@@ -11,7 +11,8 @@ use crate::simd::Machine;
 pub(super) struct CacheKey {
     /// `None` before the first tick.
     definitions: Option<Definitions>,
-    /// [`Arena::returns`](crate::body::Arena::returns) of the joints.
+    /// [`Arena::returns`](crate::body::Arena::returns) of the joints. It changes when impulses or angles are edited or
+    /// restored.
     returns: u64,
     joints: Vec<u32>,
     bodies: Vec<u32>,

@@ -45,7 +45,7 @@ pub(in crate::solver) struct JointSet {
     /// Whether each joint is in a block, in the order of the state. Empty if there are no blocks.
     is_blocked: Vec<bool>,
     blocks: Blocks,
-    /// Rows and points in blocks, by slot.
+    /// Rows and points in blocks, sorted by the slots of their joints.
     blocked_parts: Vec<(u32, BlockedPart)>,
 }
 

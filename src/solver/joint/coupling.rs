@@ -13,11 +13,11 @@ use crate::body::Body;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, fx_mul, narrow, widen};
 
-/// Smallest distance in metres between the anchors of a gear that has a pitch point. Nearer wheels are coupled in their
-/// angles only, and do not conserve angular momentum.
+/// Smallest distance in metres between the anchors of a gear for which the gear has a pitch point. The angles of nearer
+/// wheels are coupled, but their angular momentum is not conserved.
 const DISTANCE_MIN: Fx = fx!(0.001);
 
-/// Largest length of a direction, so that it fits [`Unit`].
+/// Largest length of the direction of a row, so that its components fit [`Unit`].
 const LONGEST: Fx = fx!(1.98);
 
 #[derive(Clone, Copy, Debug)]

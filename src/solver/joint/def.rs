@@ -261,7 +261,8 @@ impl JointDef {
         self
     }
 
-    /// Sets the stiffness in Hz, above 0, up to 1000, and the damping ratio, 0 to 100, of the rigid parts of the joint.
+    /// Sets the softness of the rigid parts of the joint: the frequency in Hz (above 0, at most 1000) and the damping
+    /// ratio (0 to 100).
     #[must_use]
     pub const fn softness(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
         self.softness = Some(Soft { hertz, damping_ratio });

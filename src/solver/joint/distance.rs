@@ -35,8 +35,8 @@ pub struct Distance {
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
-    /// Motor along the line: speed in m/s, positive if the anchors move apart, and largest force in N. It does not
-    /// drive beyond `rod` or `limit`.
+    /// Motor along the line: speed in m/s, positive if the anchors move apart, and largest force in N. The motor does
+    /// not drive beyond `rod` or `limit`.
     pub motor: Option<Drive>,
     /// Spring whose target is a length in metres, 0 or more.
     pub spring: Option<Spring>,

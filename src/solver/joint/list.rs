@@ -25,7 +25,8 @@ use crate::math::{Speed, Unit};
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointList {
     joints: Vec<JointConstraint>,
-    /// Data for every pass, stored separately so that passes read little memory.
+    /// For each joint, the data that every pass reads. It is stored apart from `joints`, so that passes read little
+    /// memory.
     links: Vec<Link>,
     rows: Vec<JointRow>,
     points: Vec<JointPoint>,
@@ -61,7 +62,7 @@ impl Link {
     }
 }
 
-/// A row or point in a block, by its index among the rows or the points of this list.
+/// A row or a point that a block solves, by its index in `rows` or `points` of the [`JointList`].
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ListPart {
     Row(usize),
@@ -225,7 +226,7 @@ impl JointList {
         }
     }
 
-    /// Calls `each` with the rows and points in blocks and the slots of their joints.
+    /// Calls `each` for every row and point that a block solves, with the slot of its joint.
     pub(super) fn blocked_parts(&self, mut each: impl FnMut(u32, BlockedPart)) {
         let (mut row, mut point) = (0, 0);
         for (joint, link) in self.joints.iter().zip(&self.links) {

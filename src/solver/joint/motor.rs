@@ -1,6 +1,6 @@
 //! The motor joint: motors and springs with limited force on the angle and on the anchors.
 //!
-//! An isotropic force limit bounds the length of the impulse `p = G L` of a point block.
+//! A force limit of the motor joint is isotropic: it bounds the length of the impulse `p = G L` of a point block.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,9 +14,9 @@ use crate::math::{Fx, Vec2};
 /// At speed 0 it acts as friction, as on a table seen from above. With springs it pulls the frames onto each other: a
 /// body A that follows a pointer drags B.
 ///
-/// Forces act on both bodies at B's anchor, so that a sideways force on B also turns A. If both bodies are dynamic and
-/// A's arm is longer than 88 radii of gyration on an axis, forces act at a nearer point or along the line between the
-/// centres.
+/// Forces act on both bodies at B's anchor, so that a sideways force on B also turns A. If both bodies are dynamic, B's
+/// anchor may be too far from A's centre of mass: more than 88 of A's radii of gyration along an axis. Forces then act
+/// at a nearer point, or along the line between the centres of mass.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -61,7 +61,7 @@ pub struct Motor {
 /// # let table = world.spawn(&BodyDef::fixed(), &[])?;
 /// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let puck = world.spawn(&BodyDef::dynamic().velocity((fx!(3), fx!(0))), &[square])?;
-/// // Seen from above: the table brakes a puck of 1 kg with 2 N, until it lies still.
+/// // Seen from above: friction with the table, 2 N at most, brakes a puck of 1 kg. It loses 2 m/s in each second.
 /// let friction = LinearDrive { velocity: Vec2::ZERO, max_force: fx!(2) };
 /// let friction = Motor { linear: Some(friction), ..Motor::new() };
 /// world.add_joint(&JointDef::new(table, puck, friction))?;
@@ -77,7 +77,7 @@ pub struct LinearDrive {
     pub max_force: Fx,
 }
 
-/// A spring of limited strength.
+/// A spring with limited force or torque.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -121,7 +121,8 @@ impl Motor {
     option_builders! {
         /// Sets the target speed in rad/s and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors: frequency in Hz, as for two point masses, and largest force in N.
+        /// Sets a spring between the anchors: the frequency in Hz with which two point masses would swing, and the
+        /// largest force in N.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
         /// Sets a spring between the angles: frequency in Hz, largest torque in N m.

@@ -14,8 +14,9 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 /// [`Distance::spring_force`](crate::solver::Distance::spring_force), this type is a range of forces in N.
 ///
 /// Under a steady acceleration `a`, a position exceeds its limit by `a / (2 pi f)^2`. Here `f` is the frequency of
-/// [`JointDef::softness`](crate::solver::JointDef::softness) or
-/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), at most a quarter of the sub-step rate.
+/// [`JointDef::softness`](crate::solver::JointDef::softness), or else of
+/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), but at most a quarter of the sub-step
+/// rate.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
@@ -25,7 +26,7 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 /// # let plank = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1))?);
 /// # let flap = world.spawn(&BodyDef::dynamic().position((fx!(1), fx!(0))), &[plank])?;
 /// let hinge = world.add_joint(&world.joint_at(wall, flap, Revolute::new(), (fx!(0), fx!(0)))?)?;
-/// // A key turns: the flap may open downwards by half a radian.
+/// // A key unlocks the flap, which then opens downwards by half a radian.
 /// world.set_joint_limit(hinge, Some(JointLimit { lower: fx!(-0.5), upper: fx!(0) }))?;
 /// (0..120).for_each(|_| world.step());
 /// assert!(world.joint_angle(hinge).is_some_and(|angle| (angle + fx!(0.5)).abs() < fx!(0.01)));
@@ -48,7 +49,7 @@ pub struct JointLimit {
 /// # let mut world = World::default();
 /// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let fan = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
-/// // A motor that nothing holds back, for a game in which the fan never stops.
+/// // A fan that nothing can slow down: its motor has unlimited torque.
 /// let motor = Revolute { motor: Some(Drive { speed: fx!(-3), max: Fx::MAX }), ..Revolute::new() };
 /// world.add_joint(&world.joint_at(wall, fan, motor, (fx!(0), fx!(0)))?)?;
 /// (0..10).for_each(|_| world.step());
@@ -65,9 +66,10 @@ pub struct Drive {
 
 /// A damped spring with a target.
 ///
-/// With a spring on an angle, two free bodies swing with the frequency `hertz`. A body on a hinge away from its centre
-/// of mass swings more slowly. The stiffness of a spring along a line is `(2 pi hertz)^2 m` N/m, with `m` as for
-/// [`Soft`]. If the line does not pass through a centre of mass, the spring also turns the body, which swings faster.
+/// A spring on an angle lets two free bodies swing with the frequency `hertz`. A body on a hinge away from its centre
+/// of mass swings more slowly. A spring along a line has the stiffness `(2 pi hertz)^2 m` N/m, with the reduced mass
+/// `m` of [`Soft`]. If the line does not pass through a body's centre of mass, the spring also turns this body, which
+/// raises the frequency.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -102,12 +104,12 @@ pub struct Spring {
 ///
 /// With an angular spring, two free bodies swing with the frequency `hertz`. With a linear spring between anchors, two
 /// point masses swing with this frequency: the stiffness is `(2 pi hertz)^2 m` N/m in all directions. Here `m` is the
-/// reduced mass `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed body sags by `g
-/// / (2 pi hertz)^2`. If its anchor is at the distance `r` from the centre of mass, perpendicular to the pull, the
+/// reduced mass `MA MB / (MA + MB)`, or the mass of the only moving body. A body that hangs on a fixed body sags by
+/// `g / (2 pi hertz)^2`. If its anchor is at the distance `r` from the centre of mass, perpendicular to the pull, the
 /// frequency and the damping ratio are `sqrt(1 + r^2 / k^2)` times as large, with the radius of gyration `k`.
 ///
-/// A linear spring stretched by `x` adds energy to a body of mass `M` if `(2 pi hertz / rate)^2 m x r / (M k^2)` is
-/// above about 1, at a sub-step rate of `rate`.
+/// At a sub-step rate of `rate` Hz, a linear spring that is stretched by `x` metres adds energy to a body of mass `M`
+/// if `(2 pi hertz / rate)^2 m x r / (M k^2)` is above about 1, with `m`, `r` and `k` as above.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -116,7 +118,7 @@ pub struct Spring {
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # let truck = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let jelly = world.spawn(&BodyDef::dynamic(), &[square])?;
-/// // A load of jelly, glued to the truck at both its place and its angle.
+/// // A load of jelly, soft in its position on the truck and in its angle.
 /// let soft = Soft { hertz: fx!(3), damping_ratio: fx!(0.4) };
 /// let glue = Weld { linear: Some(soft), angular: Some(soft) };
 /// world.add_joint(&JointDef::new(truck, jelly, glue))?;
@@ -140,7 +142,7 @@ impl Soft {
     }
 }
 
-/// Defines builder methods that set the optional field of their name to the value after the arrow.
+/// Defines builder methods. Each sets the optional field of its own name to the value after the arrow.
 macro_rules! option_builders {
     ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
         $(
@@ -196,7 +198,7 @@ impl Drive {
 }
 
 impl Soft {
-    /// `[frequency, damping]` are the names for errors.
+    /// Checks the ranges of both values. `frequency` and `damping` are their names in an error.
     pub(super) fn check(
         soft: Option<Self>,
         [frequency, damping]: [&'static str; 2],

@@ -10,14 +10,15 @@ use super::state::JointImpulses;
 use crate::math::{Fx, Vec2, fx_div, fx_mul};
 use crate::solver::limits::SPEED_MAX;
 
-/// Slots of impulses in the state of a joint. A point uses two slots.
+/// Indices into [`JointImpulses`]. A point uses the given slot and the next one, for x and y.
 pub(super) mod slot {
     /// A spring along or about an axis, or the row that holds the angle of a weld.
     pub(in super::super) const SPRING: u8 = 0;
     pub(in super::super) const DRIVE: u8 = 1;
-    /// The lower limit, then the upper limit. In a motor joint, the linear spring.
+    /// The lower limit; the upper limit has the next slot. In a motor joint, the point of the linear spring.
     pub(in super::super) const LIMIT: u8 = 2;
-    /// The point between the anchors, or rows that hold a position. In a motor joint, the linear motor.
+    /// The point that pins the anchors, or one or two rows that hold a position. In a motor joint, the point of the
+    /// linear motor.
     pub(in super::super) const HOLD: u8 = 4;
 }
 
@@ -30,8 +31,8 @@ pub(super) enum Direction {
     Along,
     /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. Prismatic
-    /// joints use it, because they also hold the angle.
+    /// Like `Across`, but at the point at which an impulse does not rotate the bodies relative to each other. For
+    /// prismatic joints, which also hold the angle.
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
@@ -71,7 +72,7 @@ impl Parts<'_> {
     }
 
     /// Adds a motor that does not drive beyond a limit along the same direction. If a motor of unlimited force pushed
-    /// against the limit, the impulses of both would grow in every sub-step.
+    /// against the limit, the impulses of the motor and of the limit would grow in every sub-step.
     pub(super) fn drive_within(
         &mut self,
         direction: Direction,
@@ -129,8 +130,8 @@ impl Parts<'_> {
     }
 }
 
-/// The impulse of a force in a sub-step times the sum of the inverse masses, in m/s, or in m²/s for a torque.
-/// [`Fx::MAX`] and [`Fx::MIN`] are unlimited.
+/// The impulse of a force during a sub-step, times the sum of the inverse masses, in m/s. For a torque, the unit is
+/// m²/s. [`Fx::MAX`] and [`Fx::MIN`] mean no limit, and are returned unchanged.
 pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
     if force == Fx::MAX || force == Fx::MIN {
         return force;

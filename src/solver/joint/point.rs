@@ -10,8 +10,8 @@ use super::pose::JointPose;
 use crate::fx;
 use crate::math::{Fx, Speed, Unit, Vec2};
 
-/// Largest push in m/s of a spring of limited force. The value is so large that the velocities of the bodies hardly
-/// change the direction of the impulse.
+/// Largest component of [`PointGoal::push`] in m/s, for a spring with limited force. It is so much larger than the
+/// velocities of the bodies that they hardly change the direction of the impulse before it is shortened to the limit.
 const PUSH_MAX: Fx = fx!(1048576);
 
 #[derive(Clone, Copy, Debug)]

@@ -103,7 +103,8 @@ impl Ends {
         let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
         let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // Vectors to that point from B's anchor and from A's anchor.
+        // `to_b` leads from B's anchor to the balanced point. `to_a` leads from A's anchor to the point of A that would
+        // coincide with it if the joint had no position error.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = pose.gap + to_b - to_a;
@@ -115,7 +116,8 @@ impl Ends {
         }
     }
 
-    /// The row and the position for a direction other than a coupling.
+    /// The row and the position along a direction. Couplings measure rows themselves, so the result for
+    /// [`Direction::Coupled`] is an empty row.
     pub(super) fn measure(
         &self,
         direction: Direction,
@@ -145,8 +147,8 @@ impl Ends {
         }
     }
 
-    /// The row and the position along an axis that turns with A. The arm of A therefore ends at B's anchor, unless it
-    /// would be too long ([`JointPose::levers_at_one_point`]).
+    /// The row and the position along an axis that turns with A. Because the axis turns, the arm of A ends at B's
+    /// anchor, unless this arm would be too long ([`JointPose::levers_at_one_point`]).
     fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);
@@ -194,9 +196,10 @@ impl JointPose {
         }
     }
 
-    /// Levers that end at one common point, and therefore conserve angular momentum. The point is B's anchor if it is
-    /// in reach of A ([`REACH_MAX`]), or if impulses do not move one of the bodies. Otherwise A's arm is shortened to
-    /// this reach, and the point is the end of the shortened arm. `None` if this point is not in reach of B.
+    /// Levers that end at one common point, so that impulses conserve angular momentum. The point is B's anchor if A's
+    /// lever ratio is at most [`REACH_MAX`] on each axis, or if impulses do not move one of the bodies. Otherwise A's
+    /// arm is shortened to [`REACH_MAX`], and the point is its end. `None` if B's lever ratio to this point exceeds
+    /// [`REACH_MAX`].
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);
@@ -209,7 +212,8 @@ impl JointPose {
     }
 }
 
-/// Largest component of a lever ratio. The length of the lever ratio is then below `RATIO_MAX`.
+/// Largest component of a lever ratio. The length of the lever ratio is then below
+/// [`RATIO_MAX`](super::super::row::RATIO_MAX).
 const REACH_MAX: Fx = fx!(88);
 
 fn longest_ratio(lever: Lever) -> Fx {

@@ -1,9 +1,9 @@
 //! The prismatic joint: B slides along the x axis of A's frame and does not rotate relative to A.
 //!
-//! With the axis `n` fixed in A and the vector `d` from A's anchor to B's anchor, the rows along the axis have `J v =
-//! n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). The row across the axis acts at the point
-//! where its impulse does not rotate the bodies relative to each other. A row that acts at B's anchor would disturb the
-//! row on the angle, and a slider with a mass ratio of 100 would rotate three to ten times as far.
+//! With the axis `n` fixed in A and the vector `d` from A's anchor to B's anchor, the rows along the axis have
+//! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). The row across the axis acts at the
+//! point at which its impulse does not rotate the bodies relative to each other. If it acted at B's anchor, it would
+//! disturb the row on the angle: at a mass ratio of 100, the error of the angle would be three to ten times as large.
 
 use serde::{Deserialize, Serialize};
 
@@ -48,7 +48,7 @@ pub struct Prismatic {
 }
 
 impl Prismatic {
-    /// A slider without friction and limits.
+    /// A slider that moves freely along its axis.
     #[must_use]
     pub const fn new() -> Self {
         Prismatic { limit: None, motor: None, spring: None }

@@ -16,8 +16,8 @@ const RATIO_MAX: Fx = fx!(4);
 ///
 /// The length on A's side plus `ratio` times the length on B's side is at most `length`.
 ///
-/// The rope only pulls. The force on B's side is `ratio` times that on A's side, as in a tackle in which `ratio`
-/// strands hold B.
+/// The rope only pulls. The force on B is `ratio` times the force on A, as in a tackle in which B hangs from `ratio`
+/// strands.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -37,9 +37,9 @@ const RATIO_MAX: Fx = fx!(4);
 #[doc(alias = "PulleyJoint")]
 #[doc(alias = "tackle")]
 pub struct Pulley {
-    /// Wheel on A's side, in m in the world, within ±2^30.
+    /// Position of the wheel on A's side, in metres in the world, within ±2^30.
     pub wheel_a: Vec2<Fx>,
-    /// Wheel on B's side, in m in the world, within ±2^30.
+    /// Position of the wheel on B's side, in metres in the world, within ±2^30.
     pub wheel_b: Vec2<Fx>,
     /// Length of the rope in metres, 0 to 2^20, without the part between the wheels.
     pub length: Fx,

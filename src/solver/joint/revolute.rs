@@ -13,10 +13,10 @@ use crate::math::Fx;
 /// A revolute joint, or hinge: pins A's anchor to B's.
 ///
 /// A steady acceleration `a` of a body separates the anchors by `a / (2 pi f)^2`. Here `f` is the frequency of
-/// [`JointDef::softness`](crate::solver::JointDef::softness) or else
+/// [`JointDef::softness`](crate::solver::JointDef::softness), or else of
 /// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). `joint_hertz` is doubled if one of the
-/// bodies has no other joint and the other body is not dynamic. With the default of 60 Hz, gravity opens the hinge of a
-/// rotor by 18 µm, or by 70 µm if the rotor has another joint.
+/// bodies has no other joint and the other body is not dynamic. With the default of 60 Hz, gravity separates the
+/// anchors of a rotor on a fixed body by 18 µm, or by 70 µm if the rotor has another joint.
 ///
 /// The angle of the joint is the angle of B's frame relative to A's frame, in radians, counter-clockwise. It includes
 /// whole turns.

@@ -1,7 +1,7 @@
 //! The scalar rows of a joint: springs, motors, limits, and rows that hold a position.
 //!
-//! With the position `x` along a direction and the inverse masses `mA` and `mB` (angles and angular speeds are
-//! multiplied by the length `s` of the row):
+//! `x` is the position along a direction, `mA` and `mB` are the inverse masses, and `D` is the denominator of the row
+//! (`row`). Angles and angular speeds are multiplied by the length `s` of the row:
 //!
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
@@ -14,15 +14,15 @@
 //! ```
 //!
 //! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of point masses, with
-//! `m = 1 / (mA + mB)`, so that its force follows from a potential. Where the spring also turns the bodies, its scales
-//! depend on the mobility `D` ([`Softness::at_mobility`]). With constant scales, the stiffness `omega^2 m / D` would
-//! change as arms turn.
+//! `m = 1 / (mA + mB)`, so that its force follows from a potential. If the spring also turns the bodies, its
+//! `massScale` and `impulseScale` depend on `D` ([`Softness::at_mobility`]). With constant scales, the stiffness would
+//! be `omega^2 m / D`, which changes as arms turn.
 //!
 //! The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass, the row is the implicit step of a damped spring.
-//! Solving it again would remove another `massScale biasRate h` of the velocity, and lightly damped springs would come
-//! to rest too early.
+//! Solving it again would remove a further share of the velocity, `massScale biasRate h`, and lightly damped springs
+//! would come to rest too early.
 
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
@@ -37,8 +37,8 @@ use crate::math::{Fx, Ratio, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
-    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is the
-    /// softness between point masses.
+    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is that of a
+    /// spring between point masses, which each refresh adapts to the pose.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
     /// `return_rate` is `massScale biasRate` of the joint.
@@ -58,10 +58,11 @@ pub(super) struct Measure {
     pub(super) denominator: Denominator,
     /// Position along the direction in m or rad.
     pub(super) position: Fx,
-    /// Units of the row per unit of the position: `s` for an angle, the factor of the directions for a pulley,
+    /// Units of the row per unit of the position: `s` for an angle, the common factor of both directions for a pulley,
     /// otherwise 1.
     pub(super) scale: Fx,
-    /// For an axis that turns with A: the arms divided by the radii of gyration. Otherwise [`NO_REACH`].
+    /// For an axis that turns with A, the arm lengths of A and of B, each divided by the body's radius of gyration.
+    /// Otherwise [`NO_REACH`].
     pub(super) reach: [Ratio; 2],
 }
 
@@ -141,7 +142,7 @@ impl JointRow {
         self.open
     }
 
-    /// The change of the impulse of a limit in one iteration that starts from an impulse of 0 and has no bounds.
+    /// The change of a limit's impulse in one iteration, computed with an impulse of 0 and without bounds.
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
@@ -212,7 +213,7 @@ impl JointRow {
         }
     }
 
-    /// `gap` is the distance to the limit.
+    /// `gap` is the distance to the limit in m or rad, negative beyond the limit.
     fn refresh_limit(&mut self, gap: Fx, measure: &Measure, rate: u32) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
@@ -247,7 +248,7 @@ impl JointRow {
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
                 return None;
             }
-            // If the gap is so wide that `L` would fall below 0, `L` becomes 0.
+            // Limits the bias, so that a wide gap reduces `L` to 0 and not below.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
@@ -260,8 +261,8 @@ impl JointRow {
     }
 }
 
-/// The largest speed in m/s at which a limit may be approached without passing it within a sub-step. Beyond the limit,
-/// where `gap` is negative, the speed is `bias_rate` times the gap.
+/// The largest speed in m/s at which the position may approach a limit without passing it within a sub-step. If the
+/// position is beyond the limit, `gap` is negative, and so is the result: `bias_rate` times the gap.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

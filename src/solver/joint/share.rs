@@ -1,5 +1,5 @@
-//! The joints that each thread solves: a part of the hinges of each colour. One thread also solves all other joints,
-//! while the other threads wait.
+//! The joints that each thread solves. Each thread has a part of the hinges of every colour. One of the threads also
+//! solves all other joints, while the others wait.
 
 use super::super::context::{SolverPass, StepContext};
 use super::block::Blocks;
@@ -58,7 +58,8 @@ impl<'set> JointSplit<'set> {
 }
 
 impl JointShare<'_, '_> {
-    /// Computes arms and gains at the current poses. Hinges are refreshed by their next operation.
+    /// Updates the arms and gains of all joints to the current poses. Hinges are only marked: their next operation
+    /// updates them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         if self.is_empty {
             return;
@@ -154,9 +155,10 @@ struct Stretch {
     sixth: Unit,
 }
 
-/// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, and may add
-/// energy to joints that an iteration does not solve exactly. At 60 Hz, stars of bodies on free hinges reach 1.00 times
-/// their initial energy with this limit, and 1.56 times with 0.1 radians (`docs/DESIGN.md`).
+/// Largest rotation, in radians, over which lever ratios are averaged. The average is used only to measure velocities;
+/// impulses act along the lever ratio at the start of the sub-step. This difference may add energy if an iteration does
+/// not solve all joints exactly. In the test with stars of bodies on free hinges at 60 Hz, the energy does not rise
+/// above its initial value with this limit, and rises to 1.56 times this value with 0.1 radians (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 
 /// The limit that replaces [`TURN_MAX`] for a body whose only joint is an anchored hinge. One iteration solves such a

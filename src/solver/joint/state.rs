@@ -31,7 +31,8 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    /// Boxed, so that the data that every step changes is close together: saving this data is memory-bound.
+    /// Boxed, so that the other fields, which every step changes, are close together in memory: the time to save them
+    /// is limited by memory bandwidth.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
     /// Angle of B's frame relative to A's when the joint was last solved, with whole turns, in units of 2^-32 turn.
@@ -59,9 +60,9 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Replaces the definition. Impulses are kept if the joint still acts and its kind stays the same. Whole turns are
-    /// kept if the kind stays the same. If a rack has a smaller position error without whole turns, as after
-    /// [`JointDef::fitted`], the whole turns are dropped.
+    /// Replaces the definition. If the kind stays the same, the joint keeps its count of whole turns and, if `def` is
+    /// enabled, its impulses. Exception: a rack resets its count of turns to 0 if this makes its position error
+    /// smaller, as after [`JointDef::fitted`].
     pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {
@@ -140,7 +141,7 @@ impl Joint {
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let weight = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
-/// // An arm of 2 m holds 10 N up: its motor exerts 20 N m.
+/// // A motor holds a weight of 10 N on an arm of 2 m, and therefore exerts 20 N m.
 /// let motor = Revolute::new().motor(fx!(0), fx!(100));
 /// let hinge = world.add_joint(&world.joint_at(wall, weight, motor, (fx!(0), fx!(0)))?)?;
 /// (0..60).for_each(|_| world.step());
@@ -169,7 +170,7 @@ impl JointPart {
                 let anchors = if weld.linear.is_some() { flags(&point) } else { 0 };
                 angle | anchors
             }
-            // The spring between the anchors of a motor joint has the slots of limits.
+            // In a motor joint, the linear spring uses the slots of the limits.
             (JointPart::Spring, JointKind::Motor(_)) => flags(&[slot::SPRING]) | flags(&limits),
             (JointPart::Motor, JointKind::Motor(_)) => flags(&[slot::DRIVE]) | flags(&point),
             (_, JointKind::Weld(_)) | (JointPart::Limit, JointKind::Motor(_)) => 0,

@@ -1,8 +1,9 @@
 //! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
-//! The point block acts at the anchors. If it acted at the point where its impulse does not rotate the bodies relative
-//! to each other, a plank welded to a wall would sag a fifth as far. But the gaps of a loaded chain of planks would be
-//! four times as wide, and a weld of two boxes of 1 cm that carries 100 times their mass would gain energy.
+//! The point block acts at the anchors. If it acted at the point at which its impulse does not rotate the bodies
+//! relative to each other, a plank welded to a wall would sag only a fifth as far. But the gaps of a loaded chain of
+//! planks would be four times as wide. A weld of two boxes of 1 cm that carries 100 times their mass would even gain
+//! energy.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,7 @@ use crate::math::Fx;
 /// # let a = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
 /// use lockstep2d::solver::{JointDef, Weld};
-/// // A springboard: its place is rigid, its angle yields at 2 Hz.
+/// // A springboard: its anchors are rigid, its angle yields with 2 Hz.
 /// let board = Weld::rigid().angular(fx!(2), fx!(0.3));
 /// world.add_joint(&JointDef::new(a, b, board).anchor_b((fx!(-2), fx!(0))))?;
 /// (0..300).for_each(|_| world.step());
@@ -33,8 +34,8 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors, isotropic ([`Soft`]); `None` is rigid. Angular momentum is conserved however far the
-    /// weld is stretched.
+    /// Softness of the anchors in all directions ([`Soft`]); `None` is rigid. However far the spring is stretched, it
+    /// conserves angular momentum.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,
@@ -59,7 +60,7 @@ impl Weld {
         Soft::check(self.angular, ["angular frequency in Hz", "angular damping ratio"])
     }
 
-    /// The row on the angle, if the anchors are rigid and the weld is solved as a hinge.
+    /// The row on the angle of a weld that is solved as a hinge, because its anchors are rigid. Otherwise `None`.
     pub(super) fn angle_parts(&self) -> Option<AngleParts> {
         let spring = self.angular.map(|soft| soft.towards(Fx::ZERO));
         let parts = AngleParts { spring, held: spring.is_none(), drive: None, limit: None };

@@ -29,7 +29,7 @@ impl Row {
         let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit, e: Ratio| {
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            // A velocity change must not be larger than `L`.
+            // Rounding must not make a gain larger than 1: a velocity change would then exceed `L`.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
@@ -42,7 +42,7 @@ impl Row {
     }
 }
 
-/// `2^6 n / d` for numbers that are not negative, rounded to nearest.
+/// `2^6 n / d`, rounded to nearest. `n` and `d` must not be negative.
 fn quotient(n: i64, d: i64) -> i64 {
     if n < 1 << 56 && d < 1 << 62 {
         ((n << 6) + d / 2) / d
@@ -67,13 +67,13 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     if sum == 0 {
         return Length::ZERO;
     }
-    // An even shift leaves 31 or 32 bits. The reciprocal then has as many bits, and its root half as many. The root is
-    // increased by more than its rounding error, so that `f` is not above 1.
+    // An even shift leaves 31 or 32 bits of the sum. `2^62` divided by them has 31 or 32 bits as well, and the root of
+    // the quotient has 16. The root is increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
     let root = u128::from(root + (root >> 14) + 1);
-    // `root` is `2^(31 + shift/2) / sqrt(sum)`. A length is `2^(22 + 36) / sqrt(sum)`.
+    // `root` is `2^(31 + shift/2) / sqrt(sum)`. The bits of the length are `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
     let most = (100 << 43) / a.max(b).max(1);

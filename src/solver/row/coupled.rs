@@ -5,8 +5,9 @@
 //! D  = aA (nA^2 + eA^2) + aB (nB^2 + eB^2)
 //! ```
 //!
-//! `D` should be about 1. A `D` that would give gains above 4.1 is replaced by a larger `D`. One update then removes
-//! only a part of the velocity. This happens in gears whose anchors are off their wheels' centres, not in pulleys.
+//! Callers choose units in which `D` is about 1. If `D` is so small that gains would exceed 4.1, a larger `D` replaces
+//! it. One update then removes only a part of the velocity. This happens in gears whose anchors are off their wheels'
+//! centres, not in pulleys.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Unit, Vec2};
@@ -27,7 +28,7 @@ impl Row {
         let (e_a, e_b) = (ratio(0), ratio(1));
         let linear = |fraction: Unit, n: Vec2<Unit>| {
             let square: Unit = n.dot(n);
-            // The square of a direction of up to 2 does not fit, but its half does.
+            // The squared length of a direction is up to 4. It may not fit a `Unit`, but half of it does.
             let half: Unit = Vec2::new(n.x / 2, n.y / 2).dot(n);
             let square = if half < Unit::ONE / 2 {
                 i64::from(square.to_bits())

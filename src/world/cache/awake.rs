@@ -21,14 +21,14 @@ pub(crate) struct AwakeSet {
     /// For each body slot, whether one of `joints` is attached to the body.
     held: Vec<bool>,
     is_current: bool,
-    /// Whether there may be a kinematic body. May stay true after the last one is gone.
+    /// Whether there may be a kinematic body. After the last kinematic body is gone, the flag may stay true.
     may_have_kinematic: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlotShare<'a> {
     pub(crate) bodies: &'a [u32],
-    /// Exclusive ends of the ranges of body slots and shape slots.
+    /// Ends of the slot ranges that the thread may write: body slots, then shape slots. The ends are exclusive.
     pub(crate) ends: [u32; 2],
 }
 

@@ -4,7 +4,7 @@ use crate::body::{Body, Handle};
 use crate::collision::{BroadPhase, Pair};
 use crate::math::Aabb;
 
-/// Length of the list of changed shapes below which repeated slots are kept.
+/// Repeated slots are tolerated while the list of changed shapes is shorter than this.
 const COMPACT_MIN: usize = 4096;
 
 /// Changes since the last pair update that may affect the set of pairs.
@@ -12,7 +12,7 @@ const COMPACT_MIN: usize = 4096;
 pub(crate) struct Changes {
     /// Whether every pair may have changed, because the caches are new.
     everything: bool,
-    /// Whether a sleeping contact may have ended, or may have got an active body.
+    /// Whether a sleeping contact may have ended, or one of its bodies may have become active.
     sleeping_contacts: bool,
     /// Whether all pairs have to be checked again, because filters, sensors, kinds, masses or joints have changed.
     rules: bool,
@@ -21,8 +21,9 @@ pub(crate) struct Changes {
     shapes: Vec<u32>,
     /// Length of `shapes` at which repeated slots are removed.
     compact_at: usize,
-    /// Fat boxes at the last pair update, by shape slot. Two shapes whose boxes overlapped then are not a new pair.
-    /// [`Aabb::NOWHERE`] if the box is unknown, or if the shape may have new pairs for another reason than a new box.
+    /// Fat boxes at the last pair update, by shape slot. If the last boxes of two shapes overlap, the shapes are not a
+    /// new pair. [`Aabb::NOWHERE`] marks a shape whose last box is unknown, or that may have new pairs although its box
+    /// has not changed.
     last_boxes: Vec<Aabb>,
 }
 
@@ -68,8 +69,9 @@ impl Changes {
         self.shapes.push(shape);
     }
 
-    /// Removes repeated slots if the list is long. Otherwise edits without ticks would lengthen the list without limit.
-    /// Must not be called while a tick wakes islands by contact: `wake_touched` keeps an index into the list.
+    /// Removes repeated slots if the list is long. Without this, edits between two ticks could lengthen the list
+    /// without limit. Must not be called while a tick wakes islands by contact: `wake_touched` keeps an index into the
+    /// list.
     pub(crate) fn compact(&mut self) {
         if self.shapes.len() >= self.compact_at.max(COMPACT_MIN) {
             self.shapes.sort_unstable();
@@ -111,14 +113,15 @@ impl Changes {
         self.shapes.clear();
     }
 
-    /// Copies the record without the boxes of the last pair update.
+    /// Copies the recorded changes into `saved`, without the boxes of the last pair update.
     pub(crate) fn save_into(&self, saved: &mut Self) {
         let Changes { everything, sleeping_contacts, rules, shapes, compact_at: _, last_boxes: _ } = self;
         (saved.everything, saved.sleeping_contacts, saved.rules) = (*everything, *sleeping_contacts, *rules);
         saved.shapes.clone_from(shapes);
     }
 
-    /// Restores the record of a snapshot. The state of the snapshot must already be restored.
+    /// Restores the changes that a snapshot recorded. The state and the fat boxes of the snapshot must already be
+    /// restored.
     pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
         let Changes { everything, sleeping_contacts, rules, shapes, compact_at: _, last_boxes } = self;
         (*everything, *sleeping_contacts, *rules) = (saved.everything, saved.sleeping_contacts, saved.rules);

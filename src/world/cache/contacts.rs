@@ -12,9 +12,10 @@ use crate::world::events::HitEvent;
 pub(crate) struct ContactCache {
     output: NarrowPhaseOutput,
     parts: Vec<NarrowPhaseOutput>,
-    /// For each contact, the cached separating axis. May be shorter or longer than the list of contacts.
+    /// For each contact, the cached separating axis. The list may be too short or too long: methods resize it before
+    /// they use it.
     axes: Vec<CachedAxis>,
-    /// The touching pairs of the last tick, sorted by pair.
+    /// During the narrow phase, the touching pairs of the last tick, sorted by pair. Otherwise outdated.
     touched: Vec<ActiveContact>,
     surfaces_changed: bool,
 }
@@ -22,7 +23,7 @@ pub(crate) struct ContactCache {
 pub(crate) struct NarrowPhaseBuffers<'a> {
     pub(crate) axes: &'a mut [CachedAxis],
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
-    /// The touching pairs of the last tick with valid surfaces, sorted by pair.
+    /// The touching pairs of the last tick whose surfaces are still valid, sorted by pair.
     pub(crate) touched: &'a [ActiveContact],
 }
 
@@ -36,7 +37,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) contacts: Vec<u32>,
     /// Contacts that the solver has to solve.
     pub(crate) touching: Vec<ActiveContact>,
-    /// Possible hit events. An event is reported only if the shapes also push each other in this tick.
+    /// Possible hit events. A hit event is reported only if the shapes also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
@@ -45,10 +46,10 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) recycled: Vec<Recycled>,
 }
 
-/// A kept manifold at the current poses of the bodies.
+/// A manifold that a contact keeps from an earlier tick, moved to the current poses of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recycled {
-    /// Position of the first point.
+    /// Position of the first point in the world, in metres.
     pub(crate) origin: Vec2<Fx>,
     pub(crate) separations: [Step; 2],
 }
@@ -82,7 +83,7 @@ impl ContactCache {
         self.axes.clear();
     }
 
-    /// Called when materials or shapes may have changed. The next narrow phase drops the surfaces.
+    /// Called when materials or shapes may have changed. The next narrow phase then drops all cached surfaces.
     pub(crate) fn invalidate_surfaces(&mut self) {
         self.surfaces_changed = true;
     }
@@ -133,7 +134,7 @@ impl ContactCache {
         }
     }
 
-    /// Moves the contacts for which `stays` is false to `removed`, in order.
+    /// Moves the contacts for which `stays` returns false from `contacts` to `removed`, and keeps their order.
     pub(crate) fn split_off(
         &mut self,
         contacts: &mut Vec<Contact>,
@@ -180,7 +181,7 @@ impl NarrowPhaseOutput {
         self.sat = SatCounters::default();
     }
 
-    /// Joins the outputs of the parts. Each thread copies the output that it has written.
+    /// Joins the outputs of the threads. Each thread copies the output that it has written.
     fn join(&mut self, parts: &[Self], threads: &Threads) {
         let NarrowPhaseOutput { manifolds, contacts, touching, approaches, sat, boxes: _, recycled: _ } =
             self;

@@ -1,5 +1,5 @@
 //! The joints of each body, as doubly linked lists in two arrays. Adding or removing a joint takes constant time. The
-//! order within a list depends on history and is not visible outside.
+//! order within a list depends on earlier edits, so [`JointLinks::of`] sorts its result.
 
 use alloc::vec::Vec;
 

@@ -2,11 +2,11 @@
 
 use crate::collision::Contact;
 
-/// Number of pairs per body that [`pair_work`] assumes to fit into full SIMD batches.
+/// Number of pairs per body up to which [`pair_work`] assumes that pairs fit into full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// Additional cost of each pair beyond [`PAIRS_PER_BODY`], as a number of ordinary pairs. Measured on a thousand
-/// squares in one place.
+/// Additional work units of each pair beyond [`PAIRS_PER_BODY`]. An ordinary pair costs one work unit. Measured on a
+/// thousand squares in one place.
 const CROWDED_WORK: u64 = 64;
 
 /// Work units for comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.
@@ -21,8 +21,8 @@ const COMPARED_PER_WORK: u64 = 32;
 /// Number of sleeping contacts that are visited in one work unit.
 const VISITED_PER_WORK: usize = 4;
 
-/// Counts work units against a budget. Work beyond the budget may be skipped: the caller that set the budget must
-/// discard the state of a world whose meter is exhausted. The meter is not part of the state.
+/// Counts work units against a budget. The meter is not part of the state. Work beyond the budget may be skipped, so
+/// the state is then not valid: the caller that set the budget must discard a world whose meter is exhausted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkMeter {
     spent: u64,
@@ -47,7 +47,8 @@ impl WorkMeter {
         self.spent <= self.max
     }
 
-    /// Counts a search for pairs. Returns the number of new pairs that the remaining budget covers.
+    /// Counts a search for pairs that compares this many pairs of boxes. Returns the number of new pairs that the
+    /// remaining budget covers.
     pub(crate) fn spend_search(&mut self, comparisons: u64) -> usize {
         self.spend(search_work(comparisons));
         let pairs = self.max.saturating_sub(self.spent) / (NEW_PAIR_WORK + NARROW_PHASE_WORK);

@@ -1,6 +1,7 @@
 //! Working memory of a world: caches, buffers and the results of the last tick. Dropping it changes no hash.
 //!
-//! An owner whose content can become invalid keeps its fields private, and invalidates the content in its methods.
+//! An owner of content that can become invalid keeps its fields private, so that only its own methods invalidate the
+//! content.
 //!
 //! | owner | content | invalid when |
 //! |---|---|---|
@@ -53,7 +54,7 @@ pub(crate) struct Scratch {
     pub(crate) pairs: PairCache,
     pub(crate) contacts: ContactCache,
     pub(crate) union: UnionFind,
-    /// Slots of the body, the area and the shape in the area.
+    /// Shapes inside areas: slots of a body, an area, and the shape of the body that the area acts on.
     pub(crate) area_visitors: Vec<[u32; 3]>,
     pub(crate) predicted: Vec<Predicted>,
     pub(crate) finalised: Vec<Finalised>,

@@ -17,7 +17,7 @@ use crate::world::config::Config;
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U24};
 
-/// A displacement within a tick in metres: ±128, resolution 6e-8.
+/// A displacement within a tick in metres. The range is ±128 m, the resolution 6e-8 m.
 pub(crate) type Travel = FixedI32<U24>;
 
 /// Motion of a body within a tick at its velocity at the start of the tick.
@@ -25,14 +25,14 @@ pub(crate) type Travel = FixedI32<U24>;
 pub(crate) struct PredictedMotion {
     /// Centre of mass at the start of the tick.
     pub(crate) centre: Vec2<Fx>,
-    /// Displacement of the centre of mass: at most 52 m on each axis.
+    /// Displacement of the centre of mass, at most 52 m on each axis (`SPEED_MAX`, 511 m/s, at 10 ticks a second).
     pub(crate) shift: Vec2<Travel>,
     /// Rotation in radians.
     pub(crate) turn: Travel,
 }
 
 impl PredictedMotion {
-    /// Motion of a body at its current velocity. `per_second` is `1 / tick_rate`.
+    /// Motion of a body at its current velocity. `per_second` is `1 / tick_rate`, the duration of a tick in seconds.
     #[inline]
     pub(crate) fn of(body: &Body, per_second: Reciprocal) -> Self {
         let step = |speed: Speed| per_second.times(speed);
@@ -47,7 +47,7 @@ impl PredictedMotion {
         self.shift.scale::<_, U24>(fraction).widen()
     }
 
-    /// This motion, with the centre of mass moved to its place at a fraction of the tick.
+    /// This motion, with the centre of mass moved to the position that it reaches at a fraction of the tick.
     pub(crate) fn advanced(&self, fraction: Unit) -> Self {
         PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
@@ -66,8 +66,8 @@ impl PredictedMotion {
         widen(self.turn).saturating_abs()
     }
 
-    /// Upper bound of the movement of a shape's points by a rotation of `turn` radians: the lever arm times the angle,
-    /// limited to twice the lever arm.
+    /// Upper bound in metres of the movement of a shape's points, if the body rotates by `turn` radians: an upper bound
+    /// of the lever arm times the angle, at most twice that lever arm. 0 for a disc about the centre of mass.
     pub(crate) fn turn_reach(&self, turn: Fx, shape: &ShapeMotion) -> Fx {
         if turn < Fx::DELTA * 64 || shape.disc {
             return Fx::ZERO;
@@ -90,7 +90,8 @@ pub(crate) struct ShapeMotion {
     shift: Vec2<Travel>,
     /// Upper bound in metres of the movement of points by the body's rotation.
     pub(crate) turn: Travel,
-    /// Largest overlap in metres that the filters of ghost collisions and one-way shapes tolerate.
+    /// Largest overlap in metres with which another shape may still pass by this shape (ghost-collision filter, one-way
+    /// shapes).
     pub(crate) slack: Step,
     pub(crate) body: u32,
     /// Rounding radius: distance of the surface from the vertices.
@@ -158,7 +159,7 @@ impl ShapeMotion {
         narrow(size.x.saturating_add(size.y) >> 1)
     }
 
-    /// Upper bound in metres of the approach of two points within the tick.
+    /// Upper bound in metres of the approach of two shapes within the tick.
     #[inline]
     fn closing(&self, other: &ShapeMotion) -> Travel {
         let apart = |a: Travel, b: Travel| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
@@ -203,10 +204,10 @@ fn slack_of(bounds: Aabb) -> Step {
 pub(crate) struct Margins {
     pub(crate) speculative: Length,
     pub(crate) touching: Step,
-    /// Approach in a tick at [`IMPACT_SPEED`].
+    /// Distance in metres that shapes approach in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest relative movement at which a contact keeps its manifold. This limit does not apply to a round shape on a
-    /// body that is not dynamic.
+    /// Largest relative movement at which a contact keeps its manifold. For round shapes that may roll,
+    /// `step/recycle.rs` uses another limit.
     pub(crate) kept: Length,
 }
 
@@ -264,13 +265,13 @@ impl ClosingBound {
     }
 }
 
-/// Bounds and predicted motion, by slot. Bodies outside of the awake set do not move.
+/// Bounds and predicted motion of bodies and shapes, by slot. Bodies outside of the awake set have no motion.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MotionCache {
     bodies: Vec<PredictedMotion>,
     shapes: Vec<ShapeMotion>,
     moving_bodies: Vec<u32>,
-    /// Whether there may be a sensor. Stays true after the last one is gone.
+    /// Whether there may be a sensor. After the last sensor is gone, the flag stays true.
     may_have_sensors: bool,
 }
 

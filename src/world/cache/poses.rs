@@ -24,11 +24,13 @@ pub(crate) struct Poses {
 /// Bounds of the shapes of a body about its centre of mass, in metres, at any rotation of the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
-    /// Radius of a disc inside the thinnest solid shape; [`Fx::MAX`] without a solid shape.
+    /// Smallest radius of the discs inside the solid shapes, one disc for each shape. [`Fx::MAX`] without a solid
+    /// shape.
     pub(crate) core: Fx,
-    /// Upper bound of the distance of points that move when the body rotates. A circle counts with its centre only.
+    /// Upper bound of the distance from the centre of mass of points that a rotation of the body moves. Of a circle,
+    /// only the centre counts, because the circle looks the same at every rotation.
     pub(crate) reach: Fx,
-    /// Upper bound of the distance of all points.
+    /// Upper bound of the distance of all points from the centre of mass.
     pub(crate) radius: Fx,
 }
 

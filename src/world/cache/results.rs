@@ -23,7 +23,7 @@ impl TickResults {
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Predicted {
-    /// Slots of the shapes that move, kept until the next tick.
+    /// Slots of the shapes that move in this tick. The next tick reads them to reset their motion.
     pub(crate) moving: Vec<u32>,
     pub(crate) outgrown: Vec<Outgrown>,
     /// Slots of bodies with a shape in the range of another thread.
@@ -54,17 +54,17 @@ pub(crate) struct Finalised {
     pub(crate) settled: Vec<u32>,
     /// Shapes that have left their fat box.
     pub(crate) left_boxes: Vec<u32>,
-    /// Fast bodies that only fixed bodies can stop.
+    /// Fast bodies that are swept against fixed bodies only.
     pub(crate) swept: Vec<SweptBody>,
-    /// Poses of `swept` after their sweep.
+    /// Slots and poses of the bodies in `swept`, after they were swept.
     pub(crate) moved: Vec<(u32, Pose)>,
     /// Number of impacts of the bodies in `swept`, if several threads share the tick. A tick on one thread counts them
     /// directly in the statistics.
     pub(crate) impacts: u32,
-    /// Bodies that may be fast relative to kinematic bodies.
+    /// Bodies to be swept against fixed and kinematic bodies, once the kinematic bodies have been moved.
     pub(crate) relative: Vec<SweptBody>,
     pub(crate) bullets: Vec<SweptBody>,
-    /// Bodies with a shape in the range of another thread, not yet moved.
+    /// Slots and new poses of bodies with a shape in the range of another thread. These bodies have not been moved yet.
     pub(crate) others: Vec<(u32, Pose)>,
 }
 
@@ -102,6 +102,6 @@ pub(crate) struct SweptBody {
     pub(crate) sweep: Sweep,
     /// The pose that the solver has computed.
     pub(crate) end: Pose,
-    /// Whether the body's own motion makes it fast. If not, it may be fast relative to a kinematic body.
+    /// Whether the body is fast by its own motion. Otherwise it may still be fast relative to a kinematic body.
     pub(crate) is_fast: bool,
 }

@@ -52,8 +52,9 @@ impl ShapeCache {
         self.poses.motion()
     }
 
-    /// See [`BroadPhase::pairs`]. Finds at most `known` pairs plus the number of new pairs that the budget of work
-    /// units covers.
+    /// Finds pairs as [`BroadPhase::pairs`] does, but at most `known` pairs plus the number of new pairs that the
+    /// budget of work units covers. Returns whether pairs were left out. If the search itself exhausts the budget,
+    /// finds no pairs and returns false.
     pub(crate) fn find_pairs(
         &mut self,
         moved: Moved<'_>,
@@ -75,8 +76,8 @@ impl ShapeCache {
         left_out
     }
 
-    /// Starts the prediction of motion, and drops queued fat boxes. `last_moving` lists shapes that moved in the last
-    /// tick.
+    /// Resets predicted motion to rest, and drops queued fat boxes. `last_moving` lists the shapes that moved in the
+    /// last tick.
     pub(crate) fn begin_prediction(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         self.refits.clear();
         self.poses.motion_mut().begin(body_slots, last_moving);

@@ -9,7 +9,7 @@ pub(crate) struct UnionFind {
 }
 
 impl UnionFind {
-    /// Makes a set of each slot. Slots are below `slot_count`.
+    /// Makes each slot a set of its own. Slots must be below `slot_count`.
     pub(crate) fn reset(&mut self, slots: &[u32], slot_count: usize) {
         self.parents.resize(slot_count, 0);
         self.stays_awake.resize(slot_count, false);

@@ -12,7 +12,7 @@ use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
 use crate::world::{Config, World};
 
-/// An edit of a world. The method of the same name documents units and errors.
+/// An edit of a world. The `World` method that a variant calls documents units and errors.
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, codec, fx, math::Vec2, world::{Command, Outcome, World}};
@@ -274,7 +274,7 @@ impl World {
     /// Executes a command.
     ///
     /// # Errors
-    /// The errors of the `World` method of the same name. The world is then unchanged.
+    /// The errors of the method that the command calls. The world is then unchanged.
     pub fn execute(&mut self, command: &Command) -> Result<Outcome, WorldError> {
         match *command {
             Command::Spawn { ref body, ref shapes } => return self.spawn(body, shapes).map(Outcome::Body),

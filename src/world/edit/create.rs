@@ -75,7 +75,8 @@ impl World {
         Ok(id)
     }
 
-    /// Adds one body for each pose. A recording stores the common definition once.
+    /// Adds one body for each pose. Unlike repeated calls of [`World::spawn`], a recording of this call contains the
+    /// definition only once.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -92,8 +93,8 @@ impl World {
         for pose in poses {
             check_position(pose.position)?;
         }
-        // All other errors depend only on the definitions. They therefore occur for the first pose, before any body is
-        // added.
+        // All other errors depend only on the definitions. They therefore occur at the first pose, when no body has
+        // been added yet.
         poses
             .iter()
             .map(|pose| self.spawn(&BodyDef { position: pose.position, angle: pose.angle, ..*body }, shapes))
@@ -138,7 +139,8 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds one joint for each pair of bodies. A recording stores the common definition once.
+    /// Adds one joint for each pair of bodies. Unlike repeated calls of [`World::add_joint`], a recording of this call
+    /// contains the definition only once.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.

@@ -80,7 +80,8 @@ impl World {
         }
     }
 
-    /// Ends the contacts of shapes that are about to be removed, changed or disabled. The next tick reports the ends.
+    /// Ends the contacts of shapes that are about to be removed, changed or disabled. The next tick reports their end
+    /// events.
     pub(super) fn end_contacts(&mut self, ids: &[ShapeId]) {
         if ids.is_empty() {
             return;

@@ -18,7 +18,7 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_div, fx_mul};
 use crate::world::World;
 
-/// Margin in metres on the search radius, larger than the rounding of distances.
+/// Margin in metres on the search radius. It is larger than the rounding errors of distances.
 const SLACK: Fx = fx!(0.000001);
 
 /// Work units for each shape in reach.

@@ -72,8 +72,8 @@ impl BodyField {
 }
 
 impl World {
-    /// Flips one bit of a field of an awake dynamic body, to test the detection of divergence. The lowest bit is 2^-21
-    /// m/s for a speed, 2^-32 m for a coordinate and 2^-32 turns for the angle.
+    /// Flips one bit of a field of an awake dynamic body, to test the detection of divergence. Bit 0 is the lowest: it
+    /// is 2^-21 m/s of a speed, 2^-32 m of a coordinate and 2^-32 turns of the angle.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the

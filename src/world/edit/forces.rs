@@ -10,14 +10,14 @@ use crate::math::{Angle, Fx, Vec2};
 use crate::world::World;
 use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
 
-/// Displacement in metres along an axis from which [`World::set_transform`] drops the kept manifolds of a body's
-/// contacts. Kept manifolds measure displacements only modulo 1024 m.
+/// Smallest displacement along an axis, in metres, at which [`World::set_transform`] drops the kept manifolds of the
+/// body's contacts. Kept manifolds cannot be used after long displacements, which they measure only modulo 1024 m.
 const KEPT_MOVE_MAX: Fx = fx!(1);
 
 impl World {
     /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up, and so do
-    /// their torques about the centre of mass. The sums saturate at ±2^31 N along each axis and at ±2^31 N m. Their
-    /// resolution is 2^-32.
+    /// their torques about the centre of mass. The sum of forces saturates at ±2^31 N along each axis, the sum of
+    /// torques at ±2^31 N m. The resolutions are 2^-32 N and 2^-32 N m.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.

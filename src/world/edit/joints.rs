@@ -13,8 +13,8 @@ use crate::world::islands::{joint_retuned, joints_changed};
 use crate::world::state::State;
 
 impl World {
-    /// Returns the definition of a joint with both anchors at a world point, in metres, and the angle 0 at the current
-    /// poses. Pass the definition to [`World::add_joint`].
+    /// Returns the definition of a joint for [`World::add_joint`]. Both anchors are at a world point, in metres, and
+    /// the angle of the joint is 0 at the current poses.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, solver::Revolute, world::World};
@@ -41,7 +41,7 @@ impl World {
         self.joint_along(a, b, kind, anchor, Vec2::new(Fx::ONE, Fx::ZERO))
     }
 
-    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint in world coordinates. The length of the
+    /// Like [`World::joint_at`], for a prismatic or wheel joint along `axis`, in world coordinates. The length of the
     /// axis does not matter. The zero vector means the x axis.
     ///
     /// # Errors
@@ -77,10 +77,11 @@ impl World {
         Ok(def.fitted(body(a)?, body(b)?))
     }
 
-    /// Replaces the definition of a joint except for its bodies: change a copy of [`crate::solver::Joint::def`]. The
-    /// joint keeps its impulses if its kind stays the same and it is enabled. Its angle keeps whole turns if its kind
-    /// stays the same, but a rack drops them if its position error is smaller without them. A different definition
-    /// wakes the bodies.
+    /// Replaces the definition of a joint except for its bodies: change a copy of [`crate::solver::Joint::def`]. A
+    /// different definition wakes the bodies.
+    ///
+    /// If the kind stays the same, the joint keeps its count of whole turns and, if `def` is enabled, its impulses.
+    /// Exception: a rack resets its count of turns to 0 if this makes its position error smaller.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the bodies are different, a value is out of range, or a lower limit is

@@ -53,7 +53,8 @@ impl World {
         self.state.config.solver.speed_limit(self.state.config.tick_rate)
     }
 
-    /// Checks the angular velocity of a body against the speed limit for its new mass.
+    /// Checks the angular velocity of a body against the speed limit, for the radius of gyration that the body will
+    /// have.
     fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
         if body.mass == *mass {
             return Ok(());

@@ -7,8 +7,8 @@
 //! edit may disturb the island. Such an edit changes a body or joint of the island, another body that overlaps or is
 //! joined to a body of the island, or a setting that affects the balance of forces.
 //!
-//! A body does not become sleepy while it touches a moving kinematic body, is joined to one, or is inside an area of
-//! one.
+//! A body does not become sleepy while it touches a moving kinematic body, is joined to a moving kinematic body, or is
+//! inside an area of a moving kinematic body.
 
 mod sleep;
 mod wake;

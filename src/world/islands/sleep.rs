@@ -60,7 +60,8 @@ fn unite_joined(state: &State, awake: &AwakeSet, union: &mut UnionFind) {
     }
 }
 
-/// Unites the bodies of contacts with points, and the bodies of areas with the bodies on which the areas act.
+/// Unites the two bodies of each contact that has points, and the body of each area with the bodies on which the area
+/// acts.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
     contacts
         .iter()
@@ -83,7 +84,7 @@ pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
     }
 }
 
-/// Puts to sleep the sets that are not marked to stay awake.
+/// Puts to sleep every set of connected bodies that is not marked to stay awake.
 pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = &mut *scratch;
     let mut any = false;

@@ -39,7 +39,7 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     }
 }
 
-/// Wakes a body if it is dynamic, after a change in its surroundings that does not concern kinematic bodies.
+/// Wakes a body if it is dynamic. For changes in the surroundings of a body that do not affect kinematic bodies.
 fn wake_dynamic(state: &mut State, scratch: &mut Scratch, slot: u32) {
     if state.bodies.at(slot).is_dynamic() {
         wake_body(state, scratch, slot);
@@ -94,7 +94,7 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     }
 }
 
-/// Wakes the sleeping bodies that touch a body or that an area connects to it.
+/// Wakes the sleeping bodies that touch the body in `slot`, and those that an area connects to it.
 pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.meter.spend_visit(&state.sleeping_contacts);
     let other_body = |contact: &Contact| {
@@ -130,7 +130,8 @@ pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [B
     scratch.awake.invalidate();
 }
 
-/// Wakes bodies after a change of their joints that may affect whether they collide. Bodies may be listed repeatedly.
+/// Wakes bodies after a change of their joints that may affect whether the bodies collide. `bodies` may list a body
+/// repeatedly.
 pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, mut bodies: Vec<BodyId>) {
     if bodies.is_empty() {
         return;

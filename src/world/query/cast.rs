@@ -30,7 +30,7 @@ pub struct RayHit {
     pub shape: ShapeId,
     /// Fraction of the ray's translation, 0 to 1.
     pub fraction: Fx,
-    /// Point in the world, in metres.
+    /// Point at which the ray meets the shape, in the world, in metres.
     pub point: Vec2<Fx>,
     /// Outward normal of the surface. Zero if the ray starts inside the shape.
     pub normal: Vec2<Unit>,
@@ -45,7 +45,7 @@ pub struct RayHit {
 /// use lockstep2d::{fx, math::Vec2, world::{CastHit, Probe}};
 /// # let mut world = World::default();
 /// # world.spawn(&BodyDef::fixed().position((fx!(5), fx!(0))), &[ShapeDef::new(Polygon::square(fx!(1))?)])?;
-/// // A camera of 0.5 m keeps out of walls while it moves back by 10 m.
+/// // A camera with a radius of 0.5 m moves back by up to 10 m, but not into a wall.
 /// let camera = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::ZERO)?;
 /// let hit: Option<CastHit> = world.cast_shape(&camera, Vec2::new(fx!(10), fx!(0)), Default::default());
 /// let travelled = hit.expect("a wall at 4 m").travelled.x;
@@ -54,7 +54,7 @@ pub struct RayHit {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CastHit {
-    /// The shape that is met.
+    /// The shape that the probe meets.
     pub shape: ShapeId,
     /// Fraction of the translation, 0 to 1.
     pub fraction: Fx,

@@ -28,7 +28,7 @@ use crate::body::{BodyId, Handle, ShapeId};
 use crate::fx;
 use crate::math::Fx;
 
-/// Margin in metres of the searched area, because positions are rounded to a grid.
+/// Margin in metres by which a search enlarges its area, because positions are rounded to a grid.
 const SLACK: Fx = fx!(0.000001);
 
 /// Selects the shapes that a query sees. The collision filters of shape and query must accept each other.
@@ -121,7 +121,7 @@ impl QueryFilter {
         self.except == Some(body) || self.except_also.contains(&Some(body))
     }
 
-    /// Leaves out a body.
+    /// Sets the body that the query does not see ([`QueryFilter::except`]).
     #[must_use]
     pub const fn except(mut self, body: BodyId) -> Self {
         self.except = Some(body);

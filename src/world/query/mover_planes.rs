@@ -26,7 +26,7 @@ const ITERATIONS_MAX: u32 = 64;
 /// Total change of the pushes in a round, in metres, at which the planes count as solved.
 const TOLERANCE: Fx = fx!(0.000001);
 
-/// Sine of the angle between two planes below which they count as parallel.
+/// Planes count as parallel if the sine of the angle between them is below this value.
 const PARALLEL: Fx = fx!(0.000001);
 
 /// A surface near a mover, as a plane.
@@ -137,7 +137,7 @@ impl World {
     }
 }
 
-/// Vector of the given length or speed along a surface. On ground it points to the right.
+/// Vector with the given length (or speed) along a surface. On ground, a positive length leads to the right.
 pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
     Vec2::new(normal.y, -normal.x).widen().scale(length)
 }
@@ -183,7 +183,7 @@ fn nearest_outside(wanted: Vec2<Fx>, planes: &[MoverPlane]) -> Option<Vec2<Fx>> 
         if plane.height(nearest) >= Fx::ZERO {
             continue;
         }
-        // The points of the plane are p + t d.
+        // The points on the border of `plane` are p + t d.
         let n = plane.normal.widen();
         let (p, d) = (wanted - n.scale(plane.height(wanted)), n.perp());
         let (mut t_min, mut t_max) = (Fx::MIN, Fx::MAX);
@@ -229,8 +229,8 @@ fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     translation
 }
 
-/// Returns the velocity nearest to a given one without a component into the planes that are rigid and have a positive
-/// `push`. The result does not depend on the order of the planes, unlike in Box2D's `b2ClipVector`.
+/// Returns the velocity that is nearest to `velocity` and does not lead into any rigid plane with a positive `push`.
+/// The result does not depend on the order of the planes, unlike in Box2D's `b2ClipVector`.
 #[must_use]
 pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
     let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);

@@ -4,10 +4,10 @@
 //! chain link. If a cast starts in contact, a second cast therefore confirms its hit. The second cast starts where the
 //! shape just rests on the touched surfaces. An obstacle that the second cast does not meet is a seam.
 //!
-//! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. A surface that
-//! the cast moves into stops the cast, so that the shape is not lifted off this surface. Between a floor and a ceiling
-//! the shape cannot be lifted off both. If several surfaces are touched, there is therefore one more cast for each of
-//! them, for which the shape is lifted off that surface alone.
+//! For the second cast, the shape is lifted off the surfaces that the first cast leaves or slides along. It is not
+//! lifted off a surface that the first cast moves into, so that this surface stops the cast. Between a floor and a
+//! ceiling the shape cannot be lifted off both. If several surfaces are touched, there is therefore one more cast for
+//! each of them, for which the shape is lifted off that surface alone.
 
 use smallvec::SmallVec;
 
@@ -29,7 +29,8 @@ pub(super) struct Rest {
     /// Distance in metres from the surfaces at which the second cast starts. It exceeds the gap at which the first cast
     /// stops by 5 µm, so that ledges of up to 5 µm count as seams.
     gap: Fx,
-    /// Largest approach in metres of a cast to a surface that it slides along.
+    /// A cast that comes closer to a touched surface by more than this distance, in metres, moves into the surface and
+    /// does not slide along it. Short casts have a smaller limit (see [`Rest::approach`]).
     approach_max: Fx,
 }
 
@@ -37,12 +38,12 @@ impl Rest {
     pub(super) const CAST: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: fx!(0.001) };
 
-    /// For casts that turn, whose gap is up to 0.15 mm.
+    /// For casts that turn, which stop up to 0.15 mm before a surface.
     pub(super) const TURNING: Rest =
         Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
-    /// For characters. Their casts must not approach a surface that they slide along: each cast would bring the
-    /// character closer.
+    /// For characters. Their casts must not come closer to a surface that they slide along, because a character makes
+    /// many casts and would come closer with each.
     pub(super) const CHARACTER: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 
@@ -50,8 +51,8 @@ impl Rest {
 
     /// Distance in metres by which a cast along a translation approaches a surface, or `None` if it moves into the
     /// surface. A cast that slides along a surface may approach it by half a millimetre per metre, because the bodies
-    /// of a pile are parallel to within 0.1 mm per metre. A margin of 1 µm per metre covers the sides of rotated tiles,
-    /// which are parallel to within 0.5 µm per metre.
+    /// of a pile are parallel only to within 0.1 mm per metre. The result includes a margin of 1 µm per metre for the
+    /// sides of rotated tiles, which are parallel only to within 0.5 µm per metre.
     fn approach(self, normal: Vec2<Unit>, translation: Vec2<Fx>) -> Option<Fx> {
         let length = translation.length();
         let approach = normal.widen().dot(translation).saturating_neg().max(Fx::ZERO);
@@ -127,7 +128,7 @@ impl World {
         let others =
             if planes.len() > 1 { overlapping.map(off).collect() } else { SmallVec::<[_; 4]>::new() };
         let lifts: SmallVec<[Vec2<Fx>; 4]> = core::iter::once(out).chain(others).collect();
-        // From a resting position an obstacle may be further away by twice the largest displacement.
+        // From a resting position, the way to an obstacle may be longer by up to twice the largest displacement.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let furthest = lifts.iter().map(|lift| lift.length()).max().unwrap_or(Fx::ZERO);
         let beyond = forwards.scale(furthest * 2);

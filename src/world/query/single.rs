@@ -43,7 +43,7 @@ pub struct ProbeHit {
 /// let ball = Probe::new(Geometry::circle(fx!(0.1))?, Vec2::new(fx!(0), fx!(1.5)))?;
 /// let swing = Displacement { turns: fx!(0.5), ..Displacement::default() };
 /// match bat.time_of_impact(swing, &ball, Displacement::default()) {
-///     // Shortly before a quarter of a turn.
+///     // The bat meets the ball shortly before a quarter of a turn, which is the fraction 0.5.
 ///     TimeOfImpact::Hit { fraction } => assert!(fraction > fx!(0.45) && fraction < fx!(0.5)),
 ///     other => panic!("{other:?}"),
 /// }

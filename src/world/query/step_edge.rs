@@ -5,7 +5,7 @@ use crate::collision::SKIN;
 use crate::fx;
 use crate::math::{Fx, Vec2};
 
-/// Distance in metres behind the edge of a step at which there has to be ground.
+/// There must be ground at this distance in metres behind the edge of a step.
 const STEP_DEPTH: Fx = fx!(0.02);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Walk<'_> {
     /// Whether there is ground just behind a surface, at most the step height above the feet, with room to stand on it.
     fn is_step(&self, plane: &MoverPlane) -> bool {
         let Vec2 { x, y } = plane.normal;
-        // A ceiling is no step, but the normal of a wall may be rounded downwards.
+        // A ceiling, whose normal points down, is no step. Rounding may tilt the normal of a wall slightly downwards.
         if y < -SLOPE_ROUNDING || x == 0 || self.mover.step_max() == Fx::ZERO {
             return false;
         }
@@ -48,7 +48,7 @@ impl Walk<'_> {
         if self.world.cast_ray_any(here, above - here, self.filter) {
             return false;
         }
-        // An edge that the character is just leaving may be below its feet by the gap of a cast.
+        // A character that is just leaving an edge may have its feet above the edge by the distance that casts keep.
         let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
         let found = self.world.cast_ray(above, down, self.filter);
         // Ground far below the touched point may be the floor under a table.

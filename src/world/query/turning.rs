@@ -20,9 +20,9 @@ impl World {
     /// Returns the first shape that a probe meets as it moves along a translation in metres while it turns about its
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
-    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that the probe touches at the start stops the probe
-    /// once the probe has moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m
-    /// from its position, hits may be reported too early.
+    /// The probe stops 0.1 to 0.15 mm before it touches. If it touches a shape at the start, it may move up to 0.1 mm
+    /// deeper into the shape before it stops. Hits may be reported too early for 163 turns or more, and for a probe
+    /// that reaches further than 1024 m from its position.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};
@@ -62,8 +62,8 @@ impl World {
                 return interest;
             };
             if let Some(fraction) = turning.first_touch(posed, resting.as_ref(), filter.initial_overlap) {
-                // A search that gives up may report a shape early. Without the lower bound `entry`, the order of visits
-                // would then decide which shape is the first.
+                // A search that gives up may report a shape too early. The lower bound `entry` ensures that the first
+                // shape does not depend on the order of visits even then.
                 let found = (fraction.max(entry(area, translation, posed.bounds)), shape);
                 let best = closest.map_or(found, |best| best.min(found));
                 closest = Some(best);

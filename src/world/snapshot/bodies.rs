@@ -34,7 +34,7 @@ const NOT_NEAR: i32 = i32::MIN;
 type Bodies = Arena<Body, BodyId>;
 type Shapes = Arena<Shape, ShapeId>;
 
-/// A copy of a body in which the parts that ticks change are 0 or `None`.
+/// A copy of a body without the parts that ticks change: these are 0 or `None`.
 pub(super) fn lasting_body(body: &Body) -> Body {
     let mut body = body.clone();
     set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]).record());
@@ -233,7 +233,8 @@ fn corners(fat: Aabb) -> [Fx; 4] {
     [fat.lower.x, fat.lower.y, fat.upper.x, fat.upper.y]
 }
 
-/// The corners of a box in grid steps from a world point, if they are on the grid and near enough.
+/// The corners of a box as numbers of grid steps from a world point. `None` if a corner is off the grid or too far
+/// away.
 #[inline(always)]
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     const GRID: i64 = 1 << FAT_GRID_SHIFT;
@@ -244,7 +245,8 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
     let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
-    // A wrapped difference is still out of range, because the point is within the world extent.
+    // Subtraction may wrap around for a box far away. The difference is then still out of range, because `centre` is
+    // within the world extent.
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;

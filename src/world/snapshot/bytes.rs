@@ -17,7 +17,7 @@ const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 /// ```
 /// use lockstep2d::world::{SnapshotError, World};
 /// let bytes = World::default().to_bytes();
-/// // A saved game from a stranger, or from a bad disk.
+/// // A bit of a saved game was flipped, by a stranger or a bad disk.
 /// let mut damaged = bytes.clone();
 /// damaged[40] ^= 1;
 /// assert_eq!(World::from_bytes(&damaged).err(), Some(SnapshotError::Hash));
@@ -28,7 +28,7 @@ const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 pub enum SnapshotError {
     /// The bytes do not start with the magic of a world, or are shorter than a header.
     NotASnapshot,
-    /// The layout has another version.
+    /// The bytes have another version of the layout than this engine reads.
     Format {
         /// The version found.
         found: u32,
@@ -88,14 +88,16 @@ impl From<EnvelopeError> for SnapshotError {
 }
 
 impl World {
-    /// Returns the state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
+    /// Returns the state as portable bytes: a header, the canonical encoding of the state, and a hash of both.
+    /// `docs/FORMAT.md` has the layout.
     #[must_use]
     #[doc(alias = "serialize")]
     pub fn to_bytes(&self) -> Vec<u8> {
         state_to_bytes(self.state.get())
     }
 
-    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is limited.
+    /// Returns the world whose [`World::to_bytes`] are given. Safe for untrusted bytes: the memory used is at most a
+    /// multiple of their number, plus a constant.
     ///
     /// # Errors
     /// [`SnapshotError`] if the bytes are damaged, were made by an engine with another format or other semantics, or

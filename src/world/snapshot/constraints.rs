@@ -1,11 +1,13 @@
 //! Packed contacts and joints.
 //!
-//! Each contact has a head of 8 bytes: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
-//! bits), whether it has impulses. A second buffer has 80 bytes for each contact with impulses: normal and tangential
-//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (14 x i32).
+//! Each contact has a head of 8 bytes: slot of shape A (30 bits), slot of shape B (29 bits), touching (1 bit), passing
+//! (1 bit), number of points (2 bits), whether it has points or a rolling impulse (1 bit). For each contact with this
+//! last bit, a second buffer has 80 bytes: normal and tangential impulse of both points and the rolling impulse (5 x
+//! i32), feature ids of both points (2 x u16), the kept manifold (14 x i32).
 //!
-//! Each joint takes one byte of flags, then its impulses that are not 0 (i32 each) and its turns (i32 or i64). The
-//! flags mark the impulses that are not 0, and tell whether the turns take 8 bytes.
+//! Each joint takes one byte of flags, then those of its six impulses that are not 0 (i32 each), then its count of
+//! whole turns (i32 or i64). Bit `i` of the flags is set if impulse `i` is not 0. Bit 6 is set if the count takes 8
+//! bytes.
 
 use alloc::vec::Vec;
 
@@ -43,7 +45,7 @@ fn has_impulses(contact: &Contact) -> bool {
     contact.count != 0 || contact.rolling != 0
 }
 
-/// Packs the head of a contact. Slots are below 2^21 and therefore fit.
+/// Packs the head of a contact. Slots are below 2^21, so 29 bits are enough for each.
 fn head(contact: &Contact) -> u64 {
     let (a, b) = contact.shapes;
     u64::from(a) << 34
@@ -85,7 +87,7 @@ fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -
     contact
 }
 
-/// A copy of a joint without impulses and with 0 turns, because ticks change both.
+/// A copy of a joint with zero impulses and 0 turns. Ticks change both, so they are packed with every snapshot.
 pub(super) fn lasting_joint(joint: &Joint) -> Joint {
     Joint::new(*joint.def)
 }
@@ -94,8 +96,8 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
         let mut there = 0;
-        // Writes every impulse, but advances `count` only if the impulse is not 0: the next word overwrites a 0. A
-        // branch would be unpredictable.
+        // Stores every impulse, but advances `count` only if the impulse is not 0, so that the next word overwrites an
+        // impulse of 0. This avoids a branch that the processor would predict badly.
         let (mut words, mut count) = ([0i32; 8], 0);
         for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
             let bits = impulse.to_bits();

@@ -31,8 +31,8 @@ pub enum Section {
     Shapes,
     /// Joints, their impulses and their free list.
     Joints,
-    /// Active and sleeping contacts and their impulses, contacts that edits have ended since the last tick, and whether
-    /// pairs were left out at the limit.
+    /// Active and sleeping contacts and their impulses, touching contacts that edits have ended since the last tick,
+    /// and whether [`Config::pair_limit`](crate::world::Config::pair_limit) left pairs out at the last pair update.
     Contacts,
     /// Sleeping islands.
     Islands,
@@ -88,7 +88,7 @@ impl WorldDigest {
         StateHash::of_digests(self.sections.map(|(_, digest)| digest))
     }
 
-    /// The sections in which two worlds differ.
+    /// The sections whose digests differ.
     #[must_use]
     pub fn differing(&self, other: &WorldDigest) -> Vec<Section> {
         let pairs = self.sections.iter().zip(&other.sections);

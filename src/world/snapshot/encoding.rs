@@ -26,7 +26,7 @@ impl Snapshot {
 }
 
 /// In a binary format, writes the bytes of [`World::to_bytes`]. In a human-readable format such as JSON, writes a view
-/// of the state that names objects by their handles, as in `body 12v1`. The view cannot be read back.
+/// of the state that names objects by their handles, as in `body 12v1`. This view cannot be deserialized.
 impl Serialize for Snapshot {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = self.state();

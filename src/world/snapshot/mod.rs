@@ -1,9 +1,10 @@
 //! Copies of the state: in memory for rollback, as bytes for files and networks, as digests, and as a readable view.
 //!
-//! Data that ticks change (poses, velocities, fat boxes, impulses) is packed into buffers: see `bodies.rs` and
-//! `constraints.rs`. The other data of bodies, shapes, joints and islands is copied in pages of 32 slots, which
-//! snapshots share until they change (`body/arena/pages.rs`). Sleeping contacts are shared as a whole
-//! (`sleeping_contacts.rs`). Buffers are hashed when they are written. Shared data is hashed once for all snapshots.
+//! A snapshot has its own copy of the data that ticks change (poses, velocities, fat boxes, impulses), packed into
+//! buffers: see `bodies.rs` and `constraints.rs`. The other data of bodies, shapes, joints and islands is copied in
+//! pages of 32 slots. A page that has not changed since the last snapshot is shared, not copied again
+//! (`body/arena/pages.rs`). Sleeping contacts are shared as one list (`sleeping_contacts.rs`). Each snapshot hashes its
+//! buffers; shared data is hashed once for all snapshots that share it.
 
 mod bodies;
 mod bytes;

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 pub(super) trait Integer: Copy {
     type Bytes: AsRef<[u8]>;
     fn to_bytes(self) -> Self::Bytes;
-    /// The number of bytes must be the size of the integer.
+    /// Reads an integer from its little-endian bytes, whose number must be the size of the integer.
     fn of_slice(bytes: &[u8]) -> Self;
 }
 
@@ -33,7 +33,7 @@ pub(super) fn low_half(integer: i64) -> i32 {
     integer as i32
 }
 
-/// A record being written.
+/// A record of up to `N` bytes that is being written. Its first `len` bytes are already written.
 pub(super) struct Record<'a, const N: usize> {
     bytes: &'a mut [u8; N],
     len: usize,
@@ -62,7 +62,8 @@ impl<'a, const N: usize> Record<'a, N> {
     }
 }
 
-/// Replaces the content by `count` records. Faster than a [`Writer`], because the size is known.
+/// Replaces the content of `bytes` by `count` records of `N` bytes, one for each of `things`. Faster than a [`Writer`],
+/// because the size is known.
 #[inline(always)]
 pub(super) fn put_records<T, const N: usize>(
     bytes: &mut Vec<u8>,
@@ -76,15 +77,15 @@ pub(super) fn put_records<T, const N: usize>(
     }
 }
 
-/// Writes an unknown number of records. Overwrites the old content without clearing it first, so that the cost depends
-/// only on the bytes written.
+/// Replaces the content of a buffer by records whose total size is not known in advance. Overwrites the old content
+/// without clearing it first, so that the cost depends only on the bytes written.
 pub(super) struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
     len: usize,
 }
 
 impl<'a> Writer<'a> {
-    /// Reserves memory for `size` bytes.
+    /// Starts at the beginning of the buffer. Reserves memory for `size` bytes in total.
     pub(super) fn new(bytes: &'a mut Vec<u8>, size: usize) -> Self {
         bytes.reserve(size.saturating_sub(bytes.len()));
         Writer { bytes, len: 0 }
@@ -114,7 +115,7 @@ impl Drop for Writer<'_> {
     }
 }
 
-/// The unread rest of a buffer. Reading a record past the end is a bug, and gives zeros.
+/// The unread rest of a buffer. Reading a record past the end is a bug: debug builds panic, others read zeros.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 
@@ -140,7 +141,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A record being read.
+/// A record of `N` bytes that is being read. Its first `len` bytes are already read.
 pub(super) struct Fields<'a, const N: usize> {
     bytes: &'a [u8; N],
     len: usize,

@@ -26,15 +26,15 @@ use crate::world::stats::Phase;
 pub struct PhaseDigest {
     /// The phase, or `None` for the beginning of the tick.
     pub phase: Option<Phase>,
-    /// Digest of the state; after [`Phase::NarrowPhase`] also of the manifolds, after [`Phase::Prepare`] and
-    /// [`Phase::Solve`] also of velocities and displacements in the solver.
+    /// Digest of the state at the end of the phase. After [`Phase::NarrowPhase`] it includes the manifolds, and after
+    /// [`Phase::Prepare`] and [`Phase::Solve`] the velocities and displacements that only the solver has so far.
     pub digest: StateHash,
 }
 
-/// Digests since [`World::log_phases`](crate::world::World::log_phases).
+/// The recording that [`World::log_phases`](crate::world::World::log_phases) has started.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,
-    /// The state at the start of the last recorded tick.
+    /// The state at the start of the last recorded tick, or `None` before the first one.
     pub(crate) start: Option<Snapshot>,
 }

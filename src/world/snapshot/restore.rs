@@ -9,27 +9,27 @@ use crate::world::World;
 use crate::world::cache::{JointLinks, Scratch};
 use crate::world::state::State;
 
-/// Slots whose caches a restore has made outdated, unsorted and possibly repeated.
+/// Slots whose cached data (in [`Scratch`]) is outdated after a restore. The lists are unsorted and may repeat slots.
 #[derive(Default)]
 pub(super) struct Stale {
     /// Bodies whose rotation has changed.
     rotated: Vec<u32>,
-    /// Bodies whose position has changed, but not their rotation, with the displacement in metres.
+    /// Bodies whose position has changed but whose rotation has not, each with its displacement in metres.
     shifted: Vec<(u32, Vec2<Fx>)>,
     /// Shapes whose fat box has changed, with the new box.
     boxes: Vec<(u32, Aabb)>,
-    /// Slots of bodies in pages that the restore has replaced.
+    /// All bodies in pages that the restore has replaced.
     redefined_bodies: Vec<u32>,
-    /// Slots of shapes in pages that the restore has replaced.
+    /// All shapes in pages that the restore has replaced.
     redefined_shapes: Vec<u32>,
     /// Whether the restore has replaced a page of joints.
     any_joint: bool,
 }
 
 impl World {
-    /// Restores a saved state, which may come from another world. With the same edits, the following ticks are
-    /// bit-identical to the ticks that followed the save. [`World::contacts`], [`World::events`] and [`World::stats`]
-    /// are empty until the next tick.
+    /// Replaces the state by a saved state of this or another world. If the game then makes the same edits as after the
+    /// save, all following ticks have bit-identical results. [`World::contacts`], [`World::events`] and
+    /// [`World::stats`] are empty until the next tick.
     #[doc(alias = "rollback")]
     #[doc(alias = "load")]
     pub fn restore(&mut self, snapshot: &Snapshot) {
@@ -44,7 +44,7 @@ impl World {
     }
 }
 
-/// Replaces a state by the state of a snapshot, and lists in `stale` the slots that change.
+/// Replaces a state by the state of a snapshot, and adds to `stale` the slots whose cached data is outdated.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;
@@ -82,7 +82,7 @@ fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
         bodies.dedup();
     }
     scratch.shapes.restore_poses(state, &shifted, &rotated, &bodies);
-    // The boxes of a body that was enabled or disabled enter or leave the broad phase.
+    // The restore may have enabled or disabled these bodies, so their boxes may have to enter or leave the broad phase.
     let occupied = redefined_bodies.iter().filter_map(|&slot| state.bodies.get_slot(slot));
     let of_bodies = occupied.flat_map(|body| body.shapes()).map(|id| id.slot());
     let redefined_boxes: Vec<u32> = of_bodies.chain(redefined_shapes.iter().copied()).collect();

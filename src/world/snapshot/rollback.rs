@@ -15,9 +15,9 @@ use crate::world::state::{Island, Reported, State};
 
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
-/// A snapshot shares unchanged data with the world and with other snapshots. Its own memory is mainly 36 bytes for each
-/// body, 16 for each shape of a body that is not fixed, and 8 for each pair, or 88 for each pair with contact points:
-/// see [`Snapshot::rollback_bytes`].
+/// A snapshot shares unchanged data with the world and with other snapshots. In addition, it mainly takes 36 bytes for
+/// each body, 16 for each shape of a body that is not fixed, 88 for each active pair with contact points, and 8 for
+/// each other active pair: see [`Snapshot::rollback_bytes`].
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -39,10 +39,10 @@ pub struct Snapshot {
     pub(super) islands: SharedArena<Island>,
     pub(super) sleeping_contacts: Arc<PackedContacts>,
     pub(super) packed: Packed,
-    /// Digest of all other fields except `changes`.
+    /// Digest of all fields except `changes` and this one.
     pub(super) digest: WorldDigest,
-    /// Changes since the last pair update. They are not part of the state. Because of them, the next pair update of a
-    /// restored world need not check every pair.
+    /// Changes between the last pair update and the save. They are not part of the state. With them, the first pair
+    /// update after a restore need not check every pair.
     pub(super) changes: Changes,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Rest {
     pub(super) rng: Rng,
 }
 
-/// Data that ticks change, as packed bytes or as the digests of these bytes.
+/// Data that ticks change: packed (`T = Vec<u8>`), or the digests of the packed bytes (`T = StateHash`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Packed<T = Vec<u8>> {
     pub(super) bodies: PackedBodies<T>,
@@ -89,7 +89,7 @@ impl Snapshot {
         self.digest
     }
 
-    /// Returns the size of the snapshot in bytes without shared data.
+    /// Returns the size of the snapshot in bytes, without the data that it shares with the world and other snapshots.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         let Snapshot {
@@ -128,7 +128,8 @@ impl Snapshot {
         [bodies, boxes, joints, contacts, impulses]
     }
 
-    /// Replaces the snapshot by a copy of a state. Reuses the memory and the unchanged pages.
+    /// Replaces the snapshot by a copy of a state. Reuses the memory of its buffers, and shares unchanged pages with
+    /// `state`.
     pub(super) fn take(&mut self, state: &State, changes: &Changes) {
         // Destructures without `..`, so that a new field causes a compile error until it is saved.
         let State {
@@ -150,7 +151,7 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
-        // Each buffer is hashed while it is in the processor's cache.
+        // Each buffer is hashed immediately after it is packed, while it is in the processor's cache.
         let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } =
             &mut self.packed;
         packed_bodies.pack(state);

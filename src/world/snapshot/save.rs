@@ -7,7 +7,7 @@ use crate::hash::StateHash;
 use crate::world::World;
 
 impl World {
-    /// Returns a copy of the state. [`World::save_into`] reuses memory.
+    /// Returns a copy of the state. To reuse the memory of an existing snapshot, call [`World::save_into`].
     #[must_use]
     #[doc(alias = "snapshot")]
     pub fn save(&self) -> Snapshot {
@@ -17,13 +17,13 @@ impl World {
         snapshot
     }
 
-    /// Replaces a snapshot of this or another world by a copy of the state and its hash. Copies the data that ticks
-    /// change. Copies other data only if it has changed since it was last saved or hashed.
+    /// Replaces a snapshot of this or another world by a copy of the state and its hash. Always copies the data that
+    /// ticks change. Other data is copied only if it has changed since the world was last saved or hashed.
     ///
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};
     /// let mut world = World::default();
-    /// // A ring of the last eight ticks.
+    /// // A ring buffer with the states at the start of the last eight ticks.
     /// let mut ring = vec![Snapshot::default(); 8];
     /// for tick in 0..100 {
     ///     world.save_into(&mut ring[tick % 8]);

@@ -1,4 +1,5 @@
-//! Sleeping contacts: packed once and shared by all snapshots until the list changes.
+//! Sleeping contacts. After a change of the list, the next snapshot packs it, and all further snapshots share this
+//! packed form until the list changes again.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;

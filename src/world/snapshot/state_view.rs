@@ -11,7 +11,7 @@ use crate::math::{Fx, Rng};
 use crate::world::config::Config;
 use crate::world::state::{Reported, State};
 
-/// A state for human readers. Objects are named by their handles, contacts by the handles of their shapes.
+/// Serializes a state for human readers. Objects are named by their handles, contacts by the handles of their shapes.
 pub(super) struct StateView<'a>(pub(super) &'a State);
 
 impl Serialize for StateView<'_> {
@@ -85,7 +85,7 @@ struct Sections<'a, B, S, J, C, R, I> {
     vacant: VacantSlots,
 }
 
-/// Serializes items as a map, in their order.
+/// A function that returns key-value pairs, which are serialized as a map in the order of the iterator.
 struct Entries<F>(F);
 
 impl<F, I, V> Serialize for Entries<F>
@@ -99,7 +99,7 @@ where
     }
 }
 
-/// A body, with its angular velocity in rad/s.
+/// A body, and its angular velocity in rad/s (`Body::spin` is scaled).
 #[derive(Serialize)]
 struct BodyView<'a> {
     #[serde(flatten)]
@@ -123,9 +123,9 @@ struct VacantSlots {
 
 #[derive(Serialize)]
 struct Vacant {
-    /// Handles that the next added values get, in reverse order.
+    /// Handles of the free slots. Added values get them from the end of the list.
     free: Vec<String>,
-    /// Number of slots that have no generations left.
+    /// Number of slots that cannot be used again, because they have no generation numbers left.
     used_up: u32,
 }
 

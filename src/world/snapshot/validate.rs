@@ -1,4 +1,4 @@
-//! The invariants of the state, checked for decoded states and in tests.
+//! The invariants of the state. [`World::from_bytes`] checks them, and games and tests may check them at any time.
 
 use alloc::format;
 use alloc::string::String;
@@ -93,8 +93,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
         range.contains(&v.x) && range.contains(&v.y)
     };
-    // Edits keep the origin of a body within the world extent, and ticks keep its centre of mass there. The tolerance
-    // covers the distance between the origin and the centre of mass.
+    // Edits keep the origin of a body within the world extent, but not its centre of mass. Ticks keep its centre of
+    // mass there, but not its origin. The tolerance is larger than the distance between the two points.
     let reach = Vec2::new(REACH_MAX * 8, REACH_MAX * 8);
     let nearly_inside = |v: Vec2<Fx>| inside(v.max(-v) - reach);
     check(nearly_inside(body.centre), || at("outside the world"))?;
@@ -114,8 +114,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(body.rest_ticks.to_bits() <= sleepiest, || {
         at("more ticks at rest than a body of its kind can have")
     })?;
-    // A kinematic body stays active for one tick after it stops, until it is marked as settled. A moving body with this
-    // mark would skip that tick.
+    // A kinematic body that stops stays active for one more tick, in which it is marked as settled. A moving body
+    // must not have this mark, because it would then become inactive without that tick.
     let rests = body.kind == BodyKind::Kinematic && body.rest_ticks.has_settled();
     check(!(rests && body.is_moving()), || at("settled with a velocity"))?;
     check(!(rests && body.target.is_some()), || at("settled with a target"))?;
@@ -124,7 +124,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("a velocity along a locked axis"))?;
-    // Targets have the same tolerance: along a locked axis, a target has the coordinate of the centre of mass.
+    // Targets need the same tolerance: a locked axis gives a target the coordinate of the body's centre of mass, which
+    // may be outside of the world extent by less than the tolerance.
     let reachable = |target: &Pose| body.kind == BodyKind::Kinematic && nearly_inside(target.centre);
     check(body.target.as_deref().is_none_or(reachable), || {
         at("a target outside the world or of a body that is not kinematic")
@@ -135,7 +136,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(mass == body.mass, || at("its mass does not follow from its shapes"))
 }
 
-/// Must be called before bodies are checked, because their masses depend on valid shapes.
+/// Checks the shapes. Must be called before bodies are checked, because their masses are computed from the shapes.
 fn check_shapes(state: &State) -> Result<(), Violation> {
     let mut listed = alloc::vec![false; state.shapes.slot_count()];
     for (id, body) in state.bodies.iter() {
@@ -154,8 +155,8 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
         check(shape.fat.is_valid(), || {
             format!("shape {id}: the upper corner of its fat box is below the lower one")
         })?;
-        // This also rejects a box that covers all numbers, which would overlap `Aabb::NOWHERE`: its corners are off the
-        // grid.
+        // This check also rejects the box from the smallest to the largest number, whose upper corner is off the grid.
+        // It would overlap `Aabb::NOWHERE`.
         check(shape.fat == shape.fat.rounded_out(FAT_GRID_SHIFT), || {
             format!("shape {id}: a corner of its fat box is off the grid")
         })?;

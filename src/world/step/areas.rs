@@ -1,9 +1,9 @@
 //! Areas: the effects of sensors with an [`Area`] on the bodies inside them.
 //!
-//! Forces are computed once per tick, at the poses that the velocities predict for a fraction `(s - 1) / (2 s)` of the
-//! tick: the mean of the times at which `s` sub-steps begin. With the poses at the start of a tick of `h` seconds, a
-//! spring of angular frequency `omega`, such as a floating box, would gain the fraction `h^2 omega^2 (s - 1) / (2 s)`
-//! of its energy in each tick.
+//! Forces are computed once per tick, for the poses that the velocities predict for the time `h (s - 1) / (2 s)` after
+//! the start of the tick, where `h` is the length of the tick in seconds. This is the mean of the times at which its
+//! `s` sub-steps begin. If forces were computed for the poses at the start of the tick, a spring of angular frequency
+//! `omega`, such as a floating box, would gain the fraction `h^2 omega^2 (s - 1) / (2 s)` of its energy in each tick.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, RelativePose, Ring};
@@ -12,10 +12,11 @@ use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
 use crate::world::state::State;
 
-/// Slots of a body, an area and a shape of the body. Effects are summed in the sorted order of these triples.
+/// Slots of a body, an area and a shape of the body inside the area. Effects are summed in the sorted order of these
+/// triples.
 type Visitor = [u32; 3];
 
-/// Lets areas act on awake bodies with mass, once the solver has their velocities.
+/// Passes the effects of areas on awake bodies with mass to the solver. Must be called after `Solver::prepare_bodies`.
 pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
     if !scratch.shapes.motion().may_have_sensors() {
         return;
@@ -50,7 +51,8 @@ pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tun
     scratch.area_visitors = visitors;
 }
 
-/// Whether an area of an active body acts on a shape of a sleeping body.
+/// Whether one shape of a pair is an area that acts on the other one, the other one belongs to a sleeping body, and the
+/// two overlap. The area then wakes the body.
 pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
     let is_acted_on = |area: u32, shape: u32| {
         state.shapes.at(area).acts_on(state.shapes.at(shape)) && state.body_of(shape).is_asleep()
@@ -70,9 +72,9 @@ fn time_ahead(state: &State) -> Fx {
 struct Sum<'a> {
     state: &'a State,
     body: &'a Body,
-    /// Predicted pose of the body. The origin is its predicted centre of mass.
+    /// Predicted pose of the body, in coordinates whose origin is its predicted centre of mass.
     pose: RelativePose,
-    /// Predicted centre of mass in the world.
+    /// Predicted centre of mass of the body, in world coordinates.
     centre: Vec2<Fx>,
     ahead: Fx,
     /// Area of all solid shapes in m², or the length of lines in m if the body has no area.
@@ -83,9 +85,10 @@ struct Sum<'a> {
     /// First moment of the displaced mass about the body's centre of mass, in kg m.
     moment: Vec2<Fx>,
     effect: AreaEffect,
-    /// Acceleration in m/s² that acts on the medium as well as on the body.
+    /// Sum of the accelerations by gravity and areas in m/s². They act on the medium as well as on the body, so they
+    /// cause buoyancy.
     field: Vec2<Fx>,
-    /// Whether one of the areas belongs to a moving kinematic body.
+    /// Whether one of the areas belongs to a moving kinematic body. The body must then not fall asleep.
     is_on_moving_ground: bool,
 }
 
@@ -136,8 +139,8 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // A rounded outline is measured as a polygon. The share of the polygon that is inside scales the true
-                // area.
+                // Round outlines are approximated by polygons. Only the share of the polygon that is inside is used: it
+                // is multiplied by the true area of the shape.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);
@@ -182,7 +185,7 @@ impl<'a> Sum<'a> {
         self.is_on_moving_ground |= !medium.is_dynamic() && medium.is_moving();
     }
 
-    /// Adds buoyancy, which depends on the sum of the fields of all areas.
+    /// Adds buoyancy. Must be called after all areas are added, because buoyancy depends on the sum of their fields.
     fn finished(mut self) -> Self {
         debug_assert!(is_awake(self.body), "areas act on awake bodies");
         self.effect.force -= self.field.scale(self.displaced);
@@ -192,7 +195,7 @@ impl<'a> Sum<'a> {
     }
 }
 
-/// Pose of a body whose predicted centre is at `centre`.
+/// Predicted pose of a body after `ahead` seconds. `centre` is its predicted centre of mass.
 fn pose_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> RelativePose {
     let turned = Angle::from_radians(fx_mul(body.angular_velocity(), ahead));
     RelativePose {
@@ -202,7 +205,7 @@ fn pose_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> RelativePose {
     }
 }
 
-/// Acceleration towards the point `to`, which is in metres relative to the body's centre of mass.
+/// Acceleration in m/s² by an attraction to the point `to`, which is in metres relative to the body's centre of mass.
 fn pull(attraction: &Attraction, to: Vec2<Fx>) -> Vec2<Fx> {
     let Attraction { acceleration, radius, falloff } = *attraction;
     let Some((direction, distance)) = to.normalized_with_length() else { return Vec2::ZERO };

@@ -29,7 +29,7 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         let body = scratch.sweeps.relative[index];
         continuous::sweep(state, scratch, &body);
     }
-    // Bullets are swept in slot order after all other bodies.
+    // Bullets can be stopped by bodies that move, so they are swept after all other bodies, in slot order.
     for index in 0..scratch.sweeps.bullets.len() {
         let bullet = scratch.sweeps.bullets[index];
         continuous::sweep(state, scratch, &bullet);
@@ -61,7 +61,8 @@ fn run_shares(
     })
 }
 
-/// Sweeps the fast bodies that only fixed bodies can stop: they need not wait for other bodies.
+/// Sweeps the fast bodies that only fixed bodies can stop, on several threads: these sweeps do not depend on the end
+/// poses of other bodies.
 fn sweep_bodies(state: &State, scratch: &mut Scratch) {
     let mut finalised = core::mem::take(&mut scratch.finalised);
     if finalised.iter().any(|finalised| !finalised.swept.is_empty()) {
@@ -84,7 +85,7 @@ fn sweep_bodies(state: &State, scratch: &mut Scratch) {
 struct Sources<'a> {
     shapes: &'a Arena<Shape, ShapeId>,
     solver: &'a Solver,
-    /// Extents by body slot.
+    /// Extents of bodies, indexed by slot.
     extents: &'a [Extents],
     broad_phase: &'a BroadPhase,
     is_continuous: bool,
@@ -100,7 +101,8 @@ struct FinaliseShare<'a> {
 }
 
 impl FinaliseShare<'_> {
-    /// Copies velocities from the solver, and moves the bodies that are not fast.
+    /// Copies the velocities of the share's bodies from the solver, moves the bodies that are not fast, and lists the
+    /// fast ones.
     fn finalise_bodies(&mut self, slots: &[u32], sources: &Sources<'_>) -> Faults {
         self.finalised.clear();
         let mut faults = 0;
@@ -153,7 +155,8 @@ impl Sources<'_> {
     }
 }
 
-/// Does the work whose order affects the result, on the calling thread.
+/// Does the work for a share whose result depends on the order of the shares. Runs on the calling thread, for one share
+/// after the other.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));
@@ -172,11 +175,12 @@ fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
 
 struct FinalPose {
     pose: Pose,
-    /// Rotation in units of 2^-32 turns, including whole turns.
+    /// Rotation in the tick in units of 2^-32 turns, including whole turns.
     turn: i64,
 }
 
-/// Copies velocities from the solver. Returns the pose to which the body has to be moved.
+/// Copies a body's velocities from the solver, and clears its force, torque and target. Returns the pose to which the
+/// body has to be moved.
 fn finalise_body(body: &mut Body, solved: &SolverBody, faults: &mut Faults) -> FinalPose {
     let SolverBody { velocity, spin, shift, turn, .. } = *solved;
     body.velocity = velocity;

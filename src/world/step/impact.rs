@@ -1,18 +1,19 @@
 //! Contacts at the time of impact: the manifold of shapes that first touch later in the tick.
 //!
 //! A manifold at the start of the tick describes shapes that are still apart. The normal between two balls that do not
-//! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. With the normal and the lever
-//! arms at the start, an impact would change angular momentum and energy. The shapes are therefore advanced, at their
-//! initial velocities, to the time at which they touch, and collided there. The separations are then converted back to
-//! the start of the tick, along the constraint rows of the new manifold. With `f` the fraction of the tick at which the
-//! shapes touch, the separation `s` at the start is
+//! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. If an impact were solved with
+//! the normal and the lever arms at the start of the tick, it would not preserve angular momentum and energy. The
+//! shapes are therefore advanced, at their initial velocities, to the time at which they touch, and the manifold is
+//! computed there. The solver needs separations at the start of the tick. If the shapes touch at the fraction `f` of
+//! the tick, and a point with the normal and lever arms of the new manifold approaches by `d` in a whole tick, its
+//! separation `s` at the start is
 //!
 //! ```text
-//! s(0) = s(f) + f (approach in the tick)
+//! s(0) = s(f) + f d
 //! ```
 //!
 //! The time is found by conservative advancement (B. Mirtich, 1996): the separation along a fixed axis is a lower bound
-//! of the distance.
+//! of the distance, so the shapes cannot touch before it is 0.
 
 use super::speculative::{Side, SpeculativePair, approach};
 use crate::collision::{CachedAxis, Manifold, PosedShape, SatCounters, arm_of, collide_near};
@@ -23,7 +24,7 @@ use crate::world::cache::{MotionCache, PredictedMotion, Travel};
 
 const ROUNDS_MAX: u32 = 4;
 
-/// Distance in metres at which shapes count as touching.
+/// Distance in metres up to which shapes count as touching, so that the search for the time of impact ends.
 const TOLERANCE: Step = Step::lit("0.001");
 
 struct MovingShape<'a> {
@@ -49,15 +50,17 @@ impl MovingShape<'_> {
 }
 
 impl SpeculativePair<'_> {
-    /// Whether the shapes are apart, but may approach so fast that the manifold at the time of impact differs.
+    /// Whether the shapes are apart, but may approach so fast that their manifold at the time of impact differs from
+    /// `manifold`, which is that at the start of the tick.
     #[inline]
     pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
         self.closing.is_longer_than(self.margins.touching)
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
     }
 
-    /// If the shapes touch within the tick, replaces the manifold by that at the time of impact. Returns the
-    /// displacements of the bodies until then, or `None` if the manifold stays as it is.
+    /// If the shapes touch within the tick, replaces the manifold by that at the time of impact, and returns the
+    /// displacements of both bodies from the start of the tick to this time. Otherwise leaves the manifold as it is,
+    /// and returns `None`.
     #[cold]
     pub(super) fn move_to_impact(
         &self,
@@ -102,7 +105,7 @@ impl SpeculativePair<'_> {
     }
 }
 
-/// The separation of a contact point, and its approach in a whole tick.
+/// The separation of a contact point, and the distance by which it approaches in a whole tick, in units of [`Step`].
 struct ClosingPoint {
     separation: Step,
     distance: i64,
@@ -123,8 +126,8 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point closes, as the bits of a [`Unit`]. `from` is the fraction at which the
-/// point has its separation. `None` if it does not close within the tick.
+/// The fraction of the tick at which the separation of a point becomes 0, as the bits of a [`Unit`]. `from` is the
+/// fraction at which the point has `point.separation`. `None` if the result is not within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
     let time = from.saturating_add(rest);

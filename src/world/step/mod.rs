@@ -54,7 +54,8 @@ impl World {
         threads.run_tick(bodies, |parts| self.run_phases(parts, begin));
     }
 
-    /// `parts` is the number of threads that share the tick. `begin` gets a view of the results of earlier phases.
+    /// Simulates a tick on `parts` threads. Calls `begin` at the beginning of each phase, with a view of the results of
+    /// the earlier phases.
     fn run_phases(&mut self, parts: usize, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
@@ -91,8 +92,8 @@ impl World {
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
-        // If the budget does not cover the sub-steps, the tick skips them, and the caller that set the budget discards
-        // the state.
+        // If the work budget does not cover the sub-steps, the tick skips them. The state is then wrong, and the caller
+        // that has set the budget discards it.
         let sub_steps = if can_solve { settings.sub_steps } else { 0 };
         solver.sub_steps(first_sub_step, sub_steps, &tuning, &mut state.contacts);
         solver.store_joints(&mut state.joints);
@@ -109,7 +110,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // A decoded snapshot may have any tick, even the largest.
+        // Wraps, because a decoded snapshot may have any tick, even `u64::MAX`.
         state.tick = state.tick.wrapping_add(1);
     }
 }

@@ -16,13 +16,14 @@ use crate::world::cache::{
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
-/// Smallest number of contacts for a thread, except for the last thread.
+/// Smallest number of contacts that a thread gets, except for the last thread.
 const CONTACTS_MIN: usize = 512;
 
 /// Number of contacts in a block: large enough that few SIMD lanes stay empty, small enough for the cache.
 const BLOCK: usize = 64;
 
-/// Prefetch distance in contacts. The data of shape B is accessed in random order.
+/// Number of contacts by which prefetching is ahead. Only the data of shape B is prefetched: contacts are sorted by
+/// shape A, so the data of shape A is read in order, but that of shape B is not.
 const CONTACTS_AHEAD: usize = 8;
 
 /// Finds the manifolds of all contacts. The result does not depend on the number of threads.
@@ -56,14 +57,15 @@ struct NarrowPhase<'a> {
 struct Job<'a> {
     contacts: &'a mut [Contact],
     axes: &'a mut [CachedAxis],
-    /// Index in the state of the first contact.
+    /// Index of the first contact in [`State::contacts`].
     first: u32,
 }
 
-/// The near contacts of a block (their shapes may meet within the tick), as bit masks with one bit for each contact.
+/// The near contacts of a block, which are those whose shapes may meet within the tick. In each bit mask, bit `i`
+/// stands for the contact at index `start + i` of the job.
 #[derive(Clone, Copy)]
 struct NearContacts {
-    /// Index in the job of the first contact.
+    /// Index of the block's first contact in the job.
     start: usize,
     near: u64,
     box_pairs: u64,
@@ -106,7 +108,7 @@ impl NearContacts {
 }
 
 impl NarrowPhase<'_> {
-    /// Whether joints change the motion of a body in the tick, so that the place of its impact cannot be predicted.
+    /// Whether joints may change the motion of a body in the tick, so that the pose at its impact cannot be predicted.
     fn is_held(&self, side: &Side<'_>) -> bool {
         side.body.is_dynamic() && self.awake.is_held(side.shape.body().slot())
     }
@@ -170,8 +172,9 @@ impl NarrowPhase<'_> {
         near
     }
 
-    /// Completes the manifolds of near contacts, keeps those with points, and lists the touching pairs. `touched` lists
-    /// touching pairs of the last tick, sorted by pair. Returns the remaining part of `touched`, for the next block.
+    /// Finds the manifolds of the near contacts of a block. Adds those with points, and their contacts, to `output`.
+    /// `touched` lists the active contacts of the last tick from this block on, sorted by pair. Returns the part of
+    /// `touched` for the next block.
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,
@@ -203,7 +206,8 @@ impl NarrowPhase<'_> {
             }
             let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
             let Some(manifold) = manifolds.last_mut() else { continue };
-            // Displacements of the bodies until their impact, at which the manifold is computed.
+            // Displacements of the bodies from the start of the tick to the time of the manifold. Not 0 only if this is
+            // the time of impact.
             let mut moved_by = [Vec2::ZERO; 2];
             if !is_kept {
                 keep_reachable(state, poses, &pair, contact, manifold, sat);
@@ -254,7 +258,7 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// Whether the solver has to solve the contact of two shapes.
+/// Whether two shapes would have contact points that the solver has to solve. Changes no state.
 pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     let found = state.contacts.binary_search_by_key(&shapes, |contact| contact.shapes);
     let mut contact = found.map_or(Contact::new(shapes), |index| state.contacts[index]);
@@ -299,7 +303,8 @@ fn keep_reachable(
     let (a, b) = contact.shapes;
     if pair.a.one_way || pair.b.one_way {
         let sides = [a, b].map(|slot| Side::of(state, poses, slot));
-        // Shapes that first touch later in the tick may touch another face than the nearest one at the start.
+        // Shapes that first touch later in the tick may then touch with other faces than those of `manifold`, which
+        // were the nearest ones at the start.
         let mut at_touch = *manifold;
         if pair.may_impact(manifold) {
             pair.move_to_impact(sides, poses.motion(), &mut at_touch, counters);
@@ -310,7 +315,7 @@ fn keep_reachable(
             return;
         }
     }
-    // The closure avoids reading the posed shapes, which are large and which few contacts need.
+    // Passes a closure, because posed shapes are large and only a few contacts need them.
     pair.keep_reachable(manifold, poses.motion(), || [poses.at(a), poses.at(b)]);
 }
 
@@ -322,8 +327,9 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// The hit event of a fast approach. It is reported if the shapes push each other. `moved_by` has the displacements of
-/// the bodies from the start of the tick until the time of the manifold.
+/// The hit event of a contact that approaches at `hit_speed` or more; `None` for a slower contact. The event is
+/// reported only if the solver then finds a contact impulse. `moved_by` has the displacements of the bodies from the
+/// start of the tick until the time of the manifold.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,

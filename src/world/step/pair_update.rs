@@ -1,18 +1,19 @@
 //! Pair update: adds and removes contacts so that they match the overlaps of fat boxes.
 //!
-//! `State::contacts` has a contact for every pair of shapes with overlapping fat boxes that
-//! [`NonCollidingPairs::may_touch`] accepts, if at least one of the two bodies is active, up to the pair limit. A
-//! contact without an active body is in `State::sleeping_contacts`. The result is a function of the state:
-//! [`Changes`](crate::world::cache::Changes) only records where contacts may have to be added or removed.
+//! A pair of shapes has a contact if their fat boxes overlap and [`NonCollidingPairs::may_touch`] accepts the pair. If
+//! at least one of the two bodies is active, the contact is in `State::contacts`, whose length is at most the pair
+//! limit. Otherwise it is in `State::sleeping_contacts`. The result depends only on the state.
+//! [`Changes`](crate::world::cache::Changes) does not affect it: it only tells where contacts may have to be added or
+//! removed.
 
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
 use crate::world::state::State;
 
 pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    // Necessary even without changes, because the world may have been restored.
+    // Needed even if there are no changes, because a restore may have replaced the joints.
     scratch.pairs.non_colliding.refresh(state);
-    // Pairs that were left out at the limit are added as soon as there is room.
+    // If pairs were left out at the limit, the update runs even without changes: there may be room for them now.
     if !(scratch.pairs.changes.any() || state.pairs_left_out) {
         return;
     }
@@ -27,8 +28,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves sleeping contacts with an active body to the fresh contacts. Ends sleeping contacts whose shapes may no longer
-/// collide, for example after an edit has moved a kinematic body with a sensor.
+/// Moves sleeping contacts whose pair now has an active body to the fresh contacts. Ends sleeping contacts whose shapes
+/// may no longer collide or overlap, for example after an edit has moved a kinematic body with a sensor.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
@@ -53,7 +54,7 @@ fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     state.sleeping_contacts = sleeping_contacts;
 }
 
-/// Finds pairs that may be new. Returns whether pairs were left out at the limit.
+/// Adds a contact to the fresh contacts for each pair that may be new. Returns whether the limit left pairs out.
 fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     let limit = state.config.pair_limit as usize;
     let Scratch { shapes, pairs: cache, meter, .. } = scratch;
@@ -156,7 +157,8 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Ends the contacts beyond the limit, which are those in the largest slots.
+/// Ends the contacts beyond the limit. Contacts are sorted by the slots of their shapes, so those with the largest
+/// slots end.
 fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
     let limit = state.config.pair_limit as usize;
     state.pairs_left_out = left_out || state.contacts.len() > limit;

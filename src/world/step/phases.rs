@@ -15,13 +15,13 @@ impl World {
         self.phases = Some(PhaseLog::default());
     }
 
-    /// Ends the recording of [`World::log_phases`], and clears it.
+    /// Stops the recording that [`World::log_phases`] has started, and discards its digests.
     pub fn stop_logging_phases(&mut self) {
         self.phases = None;
     }
 
-    /// Returns the digests of every [`World::step`] since [`World::log_phases`], in order: eight for each tick, the
-    /// first at its beginning.
+    /// Returns the digests of every [`World::step`] since [`World::log_phases`], in order. Each tick has eight: one at
+    /// its beginning, and one after each of the seven phases.
     ///
     /// ```
     /// # use lockstep2d::world::{Phase, World};
@@ -37,7 +37,7 @@ impl World {
         self.phases.as_ref().map_or(&[], |log| &log.digests)
     }
 
-    /// Returns the state at the start of the last recorded [`World::step`].
+    /// Returns the state at the start of the last recorded [`World::step`], or `None` if none is recorded.
     #[must_use]
     pub fn step_start(&self) -> Option<&Snapshot> {
         self.phases.as_ref()?.start.as_ref()

@@ -18,8 +18,8 @@ use crate::world::cache::{
 use crate::world::derived::fattened;
 use crate::world::state::State;
 
-/// Largest distance between a fat box and the swept AABB, as a multiple of the margin. Without this limit, a shape that
-/// was fast would keep a large fat box with many pairs.
+/// Largest distance by which a fat box may extend beyond the swept AABB, as a multiple of the margin. Without this
+/// limit, a shape that was fast would keep a large fat box, which overlaps many others.
 const MARGINS_MAX: i64 = 4;
 
 /// Predicts motion, and gives new fat boxes to the shapes that need them.
@@ -33,7 +33,8 @@ pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
         cache.queue_refit(shape, fat);
         pairs.changes.box_changed(shape);
         if !is_active {
-            // The new fat box of a kinematic body that has stopped may no longer overlap shapes that rest on it.
+            // A kinematic body that has stopped may get a smaller fat box, which no longer overlaps the shapes of
+            // sleeping bodies on it.
             pairs.changes.sleeping_contacts_changed();
         }
     }
@@ -106,14 +107,15 @@ impl Prediction<'_> {
     }
 }
 
-/// Extension of AABBs to swept AABBs. Positions are within the world extent and displacements below 52 m, so that no
-/// sum overflows.
+/// Extension of the AABBs of a body's shapes to swept AABBs. The sums below cannot overflow: positions are within the
+/// world extent, and displacements are at most 52 m on each axis (`SPEED_MAX`, 511 m/s, at 10 ticks a second).
 struct SweptAabb {
-    /// Displacements of the lower and upper corner, including the speculative distance.
+    /// Displacements of the lower and of the upper corner of an AABB by the body's translation, each extended by the
+    /// speculative distance.
     corners: [Vec2<Fx>; 2],
-    /// Largest movement by rotation, in metres, on both axes.
+    /// Largest movement of a point of the body by rotation, in metres. The same for both axes.
     turned: Vec2<Fx>,
-    /// Box around the body's shapes at every rotation.
+    /// Box that contains the body's shapes at every rotation of the body, at its initial position.
     disc: Aabb,
 }
 

@@ -3,14 +3,14 @@ use crate::world::events::MoveEvent;
 use crate::world::state::State;
 use crate::world::stats::StepStats;
 
-/// Lists the moved bodies in slot order.
+/// Adds a move event for each body that has moved or has fallen asleep in the tick, in slot order.
 pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, sweeps, results, .. } = scratch;
     for (&slot, &start) in awake.bodies().iter().zip(&sweeps.starts) {
         let body = state.bodies.at(slot);
         let fell_asleep = body.is_asleep();
-        // Poses are compared because continuous collision may move a body that the solver has not moved: a kinematic
-        // body that stops another body carries it.
+        // Compares poses instead of velocities, because a body whose velocity is 0 may have moved: continuous collision
+        // lets a fast kinematic body carry the bodies in its way.
         if fell_asleep || body.pose() != start {
             let (position, angle) = (body.position(), body.angle());
             let body = state.bodies.handle_at(slot);

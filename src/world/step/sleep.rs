@@ -61,7 +61,7 @@ fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
 
 #[inline(always)]
 fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) {
-    // Reads the velocity of the solver, because the velocity in the state is 0 after the body has reached its target.
+    // Reads the velocity from the solver: in the state, it is already 0 if the ground has reached its target.
     let has_moved = || {
         let solved = scratch.solver.body(ground);
         solved.velocity != Vec2::ZERO || solved.spin != 0
@@ -71,12 +71,12 @@ fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) 
     }
 }
 
-/// Whether a body was slow in this tick. Displacement counts too, because overlap is pushed out without leaving a
-/// velocity.
+/// Whether a body was slow in this tick. Its displacement must be small too, because the solver can push overlapping
+/// bodies apart without leaving a velocity.
 fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
     let square = |x: i32| i64::from(x) * i64::from(x);
-    // Twice the speed at the radius of gyration is about the speed of the outline. Displacements may have saturated at
-    // the limits of `i32`, so that sums of their squares must saturate too.
+    // `body.spin` is the speed at the radius of gyration; twice this is about the speed of the outline. Displacements
+    // may have saturated at the limits of `i32`. The sum of two squares of such values exceeds `i64`, so it saturates.
     let fastest =
         |x: i32, y: i32, turn: i32| square(x).saturating_add(square(y)).max(square(turn).saturating_mul(4));
     let limit: Speed = narrow(body.settings.sleep_speed);

@@ -1,19 +1,20 @@
-//! Work of the solver that is known only within the tick.
+//! Work of the solver whose amount is known only during the tick.
 
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units in each iteration of a joint that is solved in a block. A full block of 96 rows factors its matrix for
-/// the bias pass and for the relax pass, in several rounds if it has limits or motors.
+/// Work units in each iteration of the solver for each joint that is solved in a block. The number allows for full
+/// blocks: a matrix of 96 rows is factored for the bias pass and again for the relax pass, in several rounds if the
+/// block has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
-/// Number of active contacts.
+/// Number of active contacts, whether or not they touch.
 pub(super) fn pairs(state: &State) -> u64 {
     count(state.contacts.len())
 }
 
-/// Counts the work of new and woken pairs, and of the joints that are solved in blocks. Returns whether the budget
-/// covers it.
+/// Counts the work of new and woken pairs, and of the joints that are solved in blocks. `pairs_before` is the number of
+/// active contacts at the start of the tick. Returns whether the work budget covers the work.
 pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> bool {
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));

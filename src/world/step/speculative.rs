@@ -10,16 +10,17 @@ use crate::world::state::State;
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
 
-/// Returns a function that gives the approach of two bodies in a tick at a point of their contact, along the normal.
-/// With `x` the translation, `t` the rotation and `r` the lever arm of each body, the approach is
+/// Returns a function that gives the approach of two bodies along the normal in a whole tick, at a point of their
+/// contact. With `n` the normal, and for each body `x` the translation, `t` the rotation and `r` the lever arm, the
+/// approach is
 ///
 /// ```text
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
 ///
 /// The lever arm is the vector from the body's centre to the manifold's origin, plus the anchor of the point. The terms
-/// without the anchor are common to all points; each point adds `(tA - tB) (anchor x n)`. The result is in units of
-/// `Step` and does not saturate.
+/// without the anchor are computed once for all points; each point adds `(tA - tB) (anchor x n)`. The result is in
+/// units of `Step`. It may exceed the range of a `Step`, but not that of an `i64`.
 #[inline(always)]
 pub(super) fn approach(
     a: &PredictedMotion,
@@ -27,8 +28,8 @@ pub(super) fn approach(
     manifold: &Manifold,
 ) -> impl Fn(&ManifoldPoint) -> i64 + use<> {
     let n = (raw(manifold.normal.x), raw(manifold.normal.y));
-    // Translations are at most 52 m on each axis, arms and anchors 725 m, rotations 128 rad: no product and no sum of
-    // products reaches 2^63.
+    // Translations are at most 52 m on each axis, lever arms and anchors at most 725 m long, and rotations at most
+    // 128 rad. No product and no sum of products reaches 2^63.
     let dot = (raw(a.shift.x) - raw(b.shift.x)) * n.0 + (raw(a.shift.y) - raw(b.shift.y)) * n.1;
     let lever = move |r: Vec2<Length>| (raw(r.x) * n.1 - raw(r.y) * n.0) >> Unit::FRAC_NBITS;
     let turned = move |turn: Travel, lever: i64| (raw(turn) * lever) >> TURN_BITS;
@@ -36,7 +37,7 @@ pub(super) fn approach(
         if motion.turn == 0 || motion.centre == manifold.origin {
             return 0;
         }
-        // Both points are within the world extent, so that the difference does not overflow.
+        // Both points are within the world extent, so their difference does not overflow.
         turned(motion.turn, lever(manifold.origin.wrapping_sub(motion.centre).narrow()))
     };
     let common =
@@ -49,7 +50,7 @@ fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
     i64::from(x.to_bits())
 }
 
-/// Number of fraction bits that a rotation times a lever arm has in excess of a `Step`.
+/// The product of a rotation and a lever arm has this many fraction bits more than a `Step`.
 const TURN_BITS: u32 = Travel::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
 pub(super) struct SpeculativePair<'a> {
@@ -83,8 +84,8 @@ impl SpeculativePair<'_> {
         self.margins.touching.min(self.a.slack).min(self.b.slack)
     }
 
-    /// Removes the points that the bodies do not reach within the tick. Speculative contacts would otherwise deflect
-    /// shapes that pass by each other at high speed.
+    /// Removes the points that the bodies do not reach within the tick, or all points if the shapes pass by each other.
+    /// Speculative contacts would otherwise deflect shapes that pass by each other at high speed.
     #[inline(always)]
     pub(super) fn keep_reachable<'p>(
         &self,
@@ -109,8 +110,8 @@ impl SpeculativePair<'_> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let closing_at = approach(motions[0], motions[1], manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
-        // Largest approach at a point that may get an impulse within the tick. Shapes that overlap by more than the
-        // slack do not pass by each other.
+        // Largest approach at a point that may get an impulse within the tick. A point that overlaps by more than the
+        // slack is kept and does not count, because such shapes do not pass by each other.
         let mut fastest = 0;
         manifold.retain(|point| {
             let separation = raw(point.separation);
@@ -119,7 +120,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // A quarter is added, because a point whose gap almost closes can get an impulse, too.
+            // Adds a quarter of the approach, because a point whose gap almost closes can get an impulse, too.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }

@@ -106,7 +106,7 @@ impl ContactView<'_> {
         })
     }
 
-    /// Normal and friction per kilogram of the reduced mass, in m/s².
+    /// Normal force and friction of each point, divided by the reduced mass: accelerations in m/s².
     pub(crate) fn accelerations(&self) -> impl Iterator<Item = (&ManifoldPoint, [Fx; 2])> {
         let config = self.world.config();
         let rate = config.tick_rate.saturating_mul(config.solver.sub_steps);
@@ -123,8 +123,8 @@ impl ContactView<'_> {
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        // The index of the manifold is the place of the pair in the solver. `place` may be smaller, because edits
-        // remove pairs from `touching`.
+        // The solver numbers pairs by the index of their manifold. `place` may be smaller than this index, because
+        // edits remove pairs from `touching`.
         self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 

@@ -9,7 +9,7 @@ use crate::world::islands::{unite, unite_touching};
 impl World {
     /// Returns the sets of enabled dynamic bodies that fall asleep and wake together: those connected by joints, by
     /// contacts of the last tick or by areas, and sleeping islands. Bodies are in slot order, sets in the order of
-    /// their first bodies. For tools: each call computes the sets.
+    /// their first bodies. Meant for tools, because each call computes the sets anew.
     #[must_use]
     pub fn islands(&self) -> Vec<Vec<BodyId>> {
         let state = &self.state;

@@ -4,8 +4,8 @@ use crate::solver::{Joint, JointKind, JointPart, Tuning, Weld};
 use crate::world::World;
 
 impl World {
-    /// Returns the anchors of a joint on body A and on body B, in the world, in metres. `None` if the joint is not in
-    /// the world, as with the other methods for one joint.
+    /// Returns the anchors of a joint on body A and on body B, in world coordinates in metres. This and all other
+    /// methods for one joint return `None` if the joint is not in the world.
     #[must_use]
     pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -13,8 +13,8 @@ impl World {
         Some((a.transform().apply(def.frame_a.anchor), b.transform().apply(def.frame_b.anchor)))
     }
 
-    /// Returns the angle of B's frame relative to A's frame in radians, counter-clockwise, including full turns. Turns
-    /// are counted while the joint acts on a dynamic body.
+    /// Returns the angle of B's frame relative to A's frame in radians, counter-clockwise, including full turns. Full
+    /// turns are counted only while the joint acts on a dynamic body.
     #[must_use]
     pub fn joint_angle(&self, id: JointId) -> Option<Fx> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -51,7 +51,7 @@ impl World {
         self.joint_anchors(id).map(|(a, b)| a.distance(b))
     }
 
-    /// Returns the distance in metres by which the anchors violate the joint. `None` for motor and filter joints.
+    /// Returns the distance in metres by which the bodies violate the joint. `None` for motor and filter joints.
     ///
     /// The error is the distance of the anchors for a revolute joint or a weld with rigid anchors, the offset across
     /// the axis for a prismatic or wheel joint, the deviation from the allowed lengths for a distance joint, the
@@ -97,8 +97,9 @@ impl World {
         Some(joint.reaction(a, b, &tuning))
     }
 
-    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted, or 0. An
-    /// example is the torque of a motor without the force that holds the hinge together.
+    /// Returns the share of [`World::joint_force`] of one part of the joint: its motor, limits or springs. 0 if the
+    /// joint has no such part. For example, [`JointPart::Motor`] gives the torque of a motor without the force that
+    /// holds the hinge together.
     #[doc(alias = "motor torque")]
     #[must_use]
     pub fn joint_part_force(&self, id: JointId, part: JointPart) -> Option<(Vec2<Fx>, Fx)> {

@@ -38,7 +38,7 @@ impl World {
         }
     }
 
-    /// Returns the [`World::contacts`] of a body's shapes. Each call searches all contacts.
+    /// Returns those of [`World::contacts`] in which a shape of the body takes part. Each call searches all contacts.
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = ContactView<'_>> {
         let is_there = self.body(id).is_some();
         let is_own = move |shape: ShapeId| self.shape(shape).is_some_and(|shape| shape.body() == id);
@@ -47,9 +47,9 @@ impl World {
     }
 
     /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order. Empty if the shape is no
-    /// sensor or is not in the world, or if its body is disabled. Edits since the tick, such as a
-    /// [`World::set_transform`] to a distant place, may remove shapes from the result, but never add any. A restore
-    /// preserves the result.
+    /// sensor or is not in the world, or if its body is disabled. Edits after the tick, such as a
+    /// [`World::set_transform`] to a distant place, may remove shapes from the result, but never add any. The result is
+    /// part of the state, so a restore also restores it.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

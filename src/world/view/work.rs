@@ -6,7 +6,7 @@ use crate::world::World;
 use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work, search_work, visit_work};
 use crate::world::state::State;
 
-/// Work units of a tick of an empty world, which takes some microseconds.
+/// Work units of the tick itself, even if the world is empty. Such a tick takes some microseconds.
 const TICK_WORK: u64 = 8;
 
 /// Number of slots that are visited in one work unit.
@@ -57,7 +57,8 @@ impl World {
         [solved, shapes, narrow_phase, self.scan_work()].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Work units of visiting all slots. A slot remains when its body, shape, joint or island is removed.
+    /// Work units of visiting all slots, including free ones: a slot remains when its body, shape, joint or island is
+    /// removed.
     pub(crate) fn scan_work(&self) -> u64 {
         let State { bodies, shapes, joints, islands, .. } = &*self.state;
         let slots = [bodies.slot_count(), shapes.slot_count(), joints.slot_count(), islands.slot_count()];
@@ -82,7 +83,7 @@ impl World {
         self.scratch.meter.is_exhausted()
     }
 
-    /// Ends the count, so that later ticks are not limited. Returns the work since the start.
+    /// Stops counting and removes the limit. Returns the work units counted since the start.
     pub(crate) fn stop_work_meter(&mut self) -> u64 {
         core::mem::take(&mut self.scratch.meter).spent()
     }

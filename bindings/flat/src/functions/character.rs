@@ -24,7 +24,8 @@ api! {
 
     /// Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
     /// the velocity. `from` and `state` may point to the same struct. Writes the new state to `state`, and the surfaces
-    /// that the character meets to `met`, in order. If `met` is too short, the state is written nevertheless.
+    /// to `met`, in the order in which the character meets them. If `met` is too short, the state is written
+    /// nevertheless.
     fn ls2d_move_character(
         world: u32,
         mover: In<'_, RawMover>,

@@ -80,7 +80,8 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Replaces the contents of a list of commands by an encoded list, which may come from any source.
+    /// Replaces the contents of a list of commands by the commands in `data`, an encoded list. `data` may come from an
+    /// untrusted source.
     fn ls2d_commands_decode(commands: u32, data: In<'_, u8>, size: usize) {
         let decoded: Vec<Command> = codec::decode(data.slice(size)?)?;
         with(commands, |Commands(list)| {
@@ -89,8 +90,8 @@ api! {
         })
     }
 
-    /// Executes a list of commands in order. Skips commands that the world refuses, and writes their number to
-    /// `refused`, unless this pointer is null.
+    /// Executes a list of commands in order. Skips commands that the world refuses. Writes the number of skipped
+    /// commands to `refused`, unless this pointer is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
         refused.check_if_wanted()?;
@@ -117,9 +118,10 @@ api! {
         }
     }
 
-    /// Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
-    /// A recording stores the definition only once. The fields `body` and `flags` of the poses are not read. Writes the
-    /// handles of the bodies to `ids`, unless `ids` is null or the target is a list.
+    /// Adds a body at each of the `poses`, all with the definition `body` and the same shapes. If the world refuses one
+    /// of the bodies, it adds none of them. A recording stores the definition only once. The fields `body` and `flags`
+    /// of the poses are not read. Writes the handles of the bodies to `ids`, unless `ids` is null or the target is a
+    /// list.
     fn ls2d_spawn_each(
         target: u32,
         body: In<'_, RawBodyDef>,
@@ -174,10 +176,11 @@ api! {
         }
     }
 
-    /// Adds a joint between each pair of bodies, all with one definition. If the world refuses one of the joints, it
-    /// adds none of them. A recording stores the definition only once. `ends` contains body A and body B of the first
-    /// joint, then those of the second joint, and so on; `end_count` is the number of bodies. Writes the handles of the
-    /// joints to `ids`, unless `ids` is null or the target is a list.
+    /// Adds a joint between each pair of bodies in `ends`, all with the definition `joint`, whose own bodies are
+    /// ignored. If the world refuses one of the joints, it adds none of them. A recording stores the definition only
+    /// once. `ends` contains body A and body B of the first joint, then those of the second joint, and so on;
+    /// `end_count` is the number of bodies. Writes the handles of the joints to `ids`, unless `ids` is null or the
+    /// target is a list.
     fn ls2d_add_joint_each(
         target: u32,
         joint: In<'_, RawJointDef>,
@@ -219,7 +222,7 @@ api! {
         edit(target, Command::EnableJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Disables a joint, which stays in the world.
+    /// Disables a joint: it stays in the world and keeps its handle, but has no effect.
     fn ls2d_disable_joint(target: u32, joint: RawJoint) {
         edit(target, Command::DisableJoint { joint: joint.id()? }).map(|_| ())
     }
@@ -235,13 +238,13 @@ api! {
         edit(target, Command::ApplyTorque { body: body.id()?, torque: torque.fx() }).map(|_| ())
     }
 
-    /// Applies an impulse in N s to a body at a point of the world in metres.
+    /// Applies an impulse in N s to a body at a point of the world in metres: changes the velocity at once.
     fn ls2d_apply_impulse(target: u32, body: RawBody, impulse_x: RawFx, impulse_y: RawFx, x: RawFx, y: RawFx) {
         let (impulse, point) = (vector(impulse_x, impulse_y), vector(x, y));
         edit(target, Command::ApplyImpulse { body: body.id()?, impulse, point }).map(|_| ())
     }
 
-    /// Applies an angular impulse in N m s to a body.
+    /// Applies an angular impulse in N m s to a body: changes the angular velocity at once.
     fn ls2d_apply_angular_impulse(target: u32, body: RawBody, impulse: RawFx) {
         edit(target, Command::ApplyAngularImpulse { body: body.id()?, impulse: impulse.fx() }).map(|_| ())
     }
@@ -258,9 +261,10 @@ api! {
         edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle.
-    /// After this tick its velocity is 0. Other bodies are refused with `LS2D_WRONG_KIND`. `LS2D_SPEED` if the body
-    /// cannot reach the pose in one tick at the world's `speed_max`: use `ls2d_set_transform` for such a distance.
+    /// Moves a kinematic body during the next tick, so that its origin ends at (`x`, `y`) in metres with the rotation
+    /// `angle`. After this tick its velocity is 0. The result is `LS2D_WRONG_KIND` for a body that is not kinematic,
+    /// and `LS2D_SPEED` if the body cannot reach the pose in one tick at the world's `speed_max`: use
+    /// `ls2d_set_transform` for such a distance.
     fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
@@ -272,7 +276,7 @@ api! {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }
 
-    /// Changes the kind of a body.
+    /// Changes the kind of a body. A body that becomes fixed stops.
     fn ls2d_set_kind(target: u32, body: RawBody, kind: u32) {
         edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
     }
@@ -297,16 +301,16 @@ api! {
         edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())
     }
 
-    /// Lets a body take part in the simulation.
+    /// Enables a body: it takes part in the simulation again.
     fn ls2d_enable(target: u32, body: RawBody) { body_commands!(target, body, Enable) }
 
-    /// Takes a body out of the simulation.
+    /// Disables a body: it keeps its pose and velocity, collides with nothing, and queries do not find it.
     fn ls2d_disable(target: u32, body: RawBody) { body_commands!(target, body, Disable) }
 
     /// Wakes a body.
     fn ls2d_wake(target: u32, body: RawBody) { body_commands!(target, body, Wake) }
 
-    /// Puts a dynamic body to sleep, with the dynamic bodies that contacts and joints connect it to.
+    /// Puts a dynamic body to sleep, together with the dynamic bodies that are connected to it by contacts and joints.
     fn ls2d_sleep(target: u32, body: RawBody) { body_commands!(target, body, Sleep) }
 
     /// Sets the gravity in m/s².
@@ -314,8 +318,8 @@ api! {
         edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
     }
 
-    /// Replaces the settings of a world. If a limit differs from the limit in the world, all settings are refused. A
-    /// recording also refuses a different tick rate.
+    /// Replaces the settings of a world. A limit, such as `body_limit`, must be equal to that of the world; otherwise
+    /// the result is `LS2D_FIXED_SETTING`, and no setting changes. A recording also refuses a different tick rate.
     fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
         edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
     }
@@ -325,8 +329,8 @@ api! {
         edit(target, Command::Explode { explosion: explosion.get()?.explosion()? }).map(|_| ())
     }
 
-    /// Sets the defaults of an explosion: radius and falloff of 1 m, all categories. The centre is a point of the world
-    /// in metres. `impulse` is in N s per metre of the width of a shape.
+    /// Sets the defaults of an explosion: radius and falloff of 1 m, acting on shapes of all categories. The centre is
+    /// a point of the world in metres. `impulse` is in N s per metre of the width of a shape.
     fn ls2d_explosion_init(x: RawFx, y: RawFx, impulse: RawFx, explosion: Out<'_, RawExplosion>) {
         let mut explosion = explosion;
         explosion.set(RawExplosion::new(vector(x, y), impulse.fx()))

@@ -74,7 +74,7 @@ api! {
         copy(world, |world| &world.events().sensor_end, RawSensorEvent::of, events, capacity, count)
     }
 
-    /// Joints whose force or torque has exceeded a threshold, in slot order.
+    /// Joints whose force or torque exceeded its threshold in the last sub-step of the tick, in slot order.
     fn ls2d_events_joints(world: u32, events: Out<'_, RawJointEvent>, capacity: usize, count: Out<'_, usize>) {
         copy(world, |world| &world.events().joints, RawJointEvent::of, events, capacity, count)
     }

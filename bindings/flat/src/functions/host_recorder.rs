@@ -152,9 +152,10 @@ api! {
         recorder.set(table::add(HostRecorder { recorder: Some(started), game, input_bytes })?)
     }
 
-    /// Records the final inputs of the next tick, those of all players in order. `absent` has a bit for each absent
-    /// player, whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
-    /// after this tick.
+    /// Records the inputs of the next tick, which cannot be changed later: `input_bytes` bytes for each player, in the
+    /// order of the players. `absent` has a bit for each absent player; the input of such a player has to be zeros.
+    /// Writes 1 to `due`, unless this pointer is null, if the caller then has to pass the hash of the state after this
+    /// tick to `ls2d_recorder_checkpoint`; otherwise 0.
     fn ls2d_recorder_record(
         recorder: u32,
         inputs: In<'_, u8>,
@@ -172,7 +173,8 @@ api! {
         })
     }
 
-    /// Passes the hash of the state after the last recorded tick. The call has no effect if no checkpoint is due.
+    /// Passes the hash of the state after the last recorded tick, for the checkpoint that `ls2d_recorder_record` has
+    /// announced as due. The call has no effect if no checkpoint is due.
     fn ls2d_recorder_checkpoint(recorder: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
         with(recorder, |recorder: &mut HostRecorder| {
@@ -190,7 +192,7 @@ api! {
     }
 
     /// Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
-    /// 256 results with different names. The results can be read without playing the replay.
+    /// 256 results, and their names must differ. The results can be read without playing the replay.
     fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(recorder, |recorder: &mut HostRecorder| {

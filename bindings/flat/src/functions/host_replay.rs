@@ -59,7 +59,7 @@ pub(crate) struct HostReplay {
     pub(super) tick: u64,
     /// Tick of the last comparison; `None` before the first one and after loading a state.
     pub(super) compared: Option<u64>,
-    /// Number of consecutive checkpoints, counted from the first, that the host's state hashes have matched.
+    /// Number of checkpoints at the start of the replay that all match the state hashes of the host.
     equal: usize,
     pub(super) failed: Option<Verdict>,
     /// Claims that the host has added.
@@ -132,7 +132,7 @@ impl HostReplay {
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
         if checkpoint_hash(hash, inputs) == stored {
             self.compared = Some(tick);
-            // If an earlier checkpoint was skipped, this one does not count.
+            // This checkpoint extends the sequence only if no earlier checkpoint was skipped.
             self.equal += usize::from(index == self.equal);
             return Ok(());
         }
@@ -147,7 +147,7 @@ impl HostReplay {
         Ok(())
     }
 
-    /// The verdict after the last tick or after a difference.
+    /// Returns the verdict. Fails before the last tick, unless a checkpoint has differed.
     fn verdict(&mut self, hash: StateHash) -> Outcome<Verdict> {
         self.check(hash)?;
         if let Some(failed) = &self.failed {
@@ -203,8 +203,9 @@ fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
 }
 
 api! {
-    /// Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
-    /// verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no verdict.
+    /// Opens a replay of a game with its own rules. The replay may come from an untrusted source. If the replay cannot
+    /// be played, its verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no
+    /// verdict.
     fn ls2d_replay_open(
         data: In<'_, u8>,
         size: usize,
@@ -218,7 +219,7 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as a bytes object, and numbers that describe the replay. All pointers except `rules` may be
+    /// Name of the rules as a bytes object, and numbers that describe the replay. Each pointer except `rules` may be
     /// null.
     fn ls2d_replay_rules(
         replay: u32,
@@ -265,8 +266,8 @@ api! {
         name.set(table::add(Bytes(found))?)
     }
 
-    /// The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
-    /// `LS2D_NONE` at the end.
+    /// Writes the inputs of all players for the next tick to `inputs`, and, unless `absent` is null, a bit for each
+    /// absent player to `absent`. Returns `LS2D_NONE` at the end.
     fn ls2d_replay_next(
         replay: u32,
         inputs: Out<'_, u8>,

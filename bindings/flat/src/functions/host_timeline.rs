@@ -20,8 +20,8 @@ impl HostReplay {
             let failure = || value("without an earlier saved state, the tick to go to", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A saved state is not loaded for a step of one tick: the game simulates the tick, so that it can show the
-        // events.
+        // A step of one tick is simulated even if the state after it is saved, so that the game can show the events of
+        // the tick.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -69,9 +69,10 @@ api! {
         })
     }
 
-    /// The next request of a seek: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
-    /// `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick of `ls2d_replay_seek`
-    /// is reached. `LS2D_RECORD` if the game has diverged from the file at or before this tick.
+    /// The next request of a seek. Save, load and advance are fulfilled as in a match. To fulfil
+    /// `LS2D_REQUEST_CHECKSUM`, pass the hash of the current state to `ls2d_replay_check`. Returns `LS2D_NONE` when the
+    /// tick of `ls2d_replay_seek` is reached, and `LS2D_RECORD` if the game has diverged from the file at or before
+    /// this tick.
     fn ls2d_replay_next_request(
         replay: u32,
         request: Out<'_, RawRequest>,
@@ -90,8 +91,8 @@ api! {
         })
     }
 
-    /// Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
-    /// is more.
+    /// Sets the interval in ticks at which seeking saves the state. The default is 60 ticks, or a 256th of the ticks of
+    /// the replay if that is more.
     fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
         with(replay, |replay: &mut HostReplay| {
             if ticks == 0 {

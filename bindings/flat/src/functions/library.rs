@@ -22,8 +22,8 @@ api! {
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
     /// Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
-    /// too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure, and
-    /// leaves the text unchanged.
+    /// too short, the text is cut. `length` is the length of the whole text in bytes. A call that returns `LS2D_NONE`
+    /// has not failed, and leaves the text unchanged.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();
@@ -35,7 +35,7 @@ api! {
     /// Frees an object of any kind. Every later use of its handle is an error.
     fn ls2d_free(handle: u32) { table::free(handle) }
 
-    /// Number of objects that have not been freed, to find leaks.
+    /// Number of objects that have not been freed. Use it to find leaks.
     fn ls2d_object_count() -> usize { table::count() }
 
     /// Number of bytes of a bytes object.

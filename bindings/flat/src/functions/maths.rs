@@ -105,16 +105,16 @@ api! {
     /// Angle of a vector from the x axis; 0 for the zero vector.
     fn ls2d_angle_of(x: RawFx, y: RawFx) -> RawAngle { RawAngle::of(Angle::of(Vec2::new(x.fx(), y.fx()))) }
 
-    /// The angle of a number of degrees.
+    /// Converts a number of degrees to an angle.
     fn ls2d_angle_from_degrees(degrees: RawFx) -> RawAngle { RawAngle::of(Angle::from_degrees(degrees.fx())) }
 
-    /// The angle of a number of radians.
+    /// Converts a number of radians to an angle.
     fn ls2d_angle_from_radians(radians: RawFx) -> RawAngle { RawAngle::of(Angle::from_radians(radians.fx())) }
 
-    /// Degrees of an angle, above -180 and up to 180.
+    /// Converts an angle to degrees, above -180 and up to 180.
     fn ls2d_angle_to_degrees(angle: RawAngle) -> RawFx { RawFx::of(angle.angle().to_degrees()) }
 
-    /// Radians of an angle, above -pi and up to pi.
+    /// Converts an angle to radians, above -pi and up to pi.
     fn ls2d_angle_to_radians(angle: RawAngle) -> RawFx { RawFx::of(angle.angle().to_radians()) }
 
     /// Makes a random number generator, which the game keeps as part of its state.

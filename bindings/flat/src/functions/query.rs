@@ -140,7 +140,8 @@ api! {
         })
     }
 
-    /// The shape nearest to a point of the world in metres. `LS2D_NONE` if no shape is within `within` metres.
+    /// The shape nearest to the point (`x`, `y`) of the world, in metres. `LS2D_NONE` if no shape is at most `within`
+    /// metres away.
     fn ls2d_closest(
         world: u32,
         x: RawFx,

@@ -52,8 +52,8 @@ api! {
         limits.set(RawLimits::of(&Limits::default()))
     }
 
-    /// Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
-    /// `config` stands for the default settings.
+    /// Creates a world, sets it up with the list `commands`, and starts recording it, with a checkpoint every
+    /// `interval` ticks. A null `config` stands for the default settings.
     fn ls2d_recording_new(config: In<'_, RawConfig>, commands: u32, interval: u32, recording: Out<'_, u32>) {
         let mut recording = recording;
         recording.check()?;
@@ -99,8 +99,8 @@ api! {
         bytes.set(table::add_taken(|| with(recording, take))?)
     }
 
-    /// Verifies a replay of a world, which may come from any source. A null `limits` stands for the default limits.
-    /// `ls2d_last_error` returns the verdict in words.
+    /// Verifies a replay of a world. The replay may come from an untrusted source. A null `limits` stands for the
+    /// default limits. `ls2d_last_error` returns the verdict in words.
     fn ls2d_replay_verify(data: In<'_, u8>, size: usize, limits: In<'_, RawLimits>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;
         verdict.check()?;
@@ -110,7 +110,8 @@ api! {
     }
 }
 
-/// The verdict in words. For a replay of a host's game, the text adds that the program of the game has to play it.
+/// The verdict in words. For a replay of a game that a host simulates, the text adds that only the program of this game
+/// can play it.
 fn text_of(found: &Verdict) -> String {
     match found {
         Verdict::Unverifiable { why: Mismatch::Rules { file, .. } } if file.0 == HostGame::RULES.name => {

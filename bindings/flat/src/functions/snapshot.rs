@@ -46,7 +46,7 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Makes a world from bytes, which may come from any source.
+    /// Makes a world from encoded bytes. The bytes may come from an untrusted source.
     fn ls2d_world_decode(data: In<'_, u8>, size: usize, world: Out<'_, u32>) {
         let mut world = world;
         world.check()?;

@@ -29,7 +29,7 @@ fn failed(error: &SeekError) -> Failure {
     Failure::new(status, error.to_string())
 }
 
-/// Moves a timeline by calling `by`. Fails with `LS2D_NONE` if there is no further tick.
+/// Calls `by`, which moves the timeline. Fails with `LS2D_NONE` if there is no further tick.
 fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekError>) -> Outcome {
     with(timeline, |timeline: &mut SandboxTimeline| {
         match timeline.with_dependent_mut(|_, timeline| by(timeline)) {
@@ -41,9 +41,9 @@ fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekErro
 }
 
 api! {
-    /// Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
-    /// t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
-    /// and the result is `LS2D_RECORD`. Other failures write no verdict.
+    /// Opens a replay of a world for seeking to any of its ticks. The replay may come from an untrusted source. Tick t
+    /// is the state after t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its
+    /// verdict is written, and the result is `LS2D_RECORD`. Other failures write no verdict.
     fn ls2d_timeline_open(
         data: In<'_, u8>,
         size: usize,

@@ -180,9 +180,10 @@ api! {
         })
     }
 
-    /// Copies the definition of a joint, with anchors and angles for the current poses of its bodies. Both anchors are
-    /// at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction `axis` in the
-    /// world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no position error.
+    /// Copies the definition of a joint, and sets its anchors and angles for the current poses of its bodies: both
+    /// anchors are at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction
+    /// `axis` in the world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no
+    /// position error.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

@@ -17,10 +17,10 @@ api! {
         config.set(RawConfig::of(&Config::default()))
     }
 
-    /// Copies the settings `from` to `config`, adapted to small boxes. The sub-steps and the contact stiffness are such
-    /// that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a box, with at most 64 sub-steps per tick
-    /// and 4000 per second. The speculative distance is reduced to a fiftieth of `size`, but not below 1 mm. Set
-    /// gravity and the tick rate before this call.
+    /// Copies the settings `from` to `config`, adapted to small boxes. Raises the number of sub-steps (to at most 64
+    /// per tick and 4000 per second) and the contact stiffness, so that a stack of 8 boxes of `size` metres sinks by
+    /// less than 2.5 % of `size`. Reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Set
+    /// gravity and the tick rate in `from` before this call.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());
@@ -93,8 +93,8 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results that the solver has clamped to their range since the world was made, plus one for every tick
-    /// with more pairs than `pair_limit`. Limiting a body to the largest speed does not count.
+    /// Number of faults since the world was made: results of the solver that were clamped to the range of their number
+    /// format, and ticks with more pairs than `pair_limit`. Limiting a body to the largest speed does not count.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))
@@ -151,7 +151,8 @@ api! {
         with(world, |world: &mut World| number.set(RawFx::of(world.rng().range(low, high))))
     }
 
-    /// Rebuilds the caches of a world. Its hash does not change. There are no events until the next tick.
+    /// Rebuilds the caches of a world from its state. The hash of the world does not change. There are no events until
+    /// the next tick.
     fn ls2d_world_clear_scratch(world: u32) {
         with(world, |world: &mut World| {
             world.clear_scratch();

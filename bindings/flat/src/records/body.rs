@@ -30,7 +30,8 @@ constants! {
     BODY_LOCK_ROTATION = 16, "LS2D_BODY_LOCK_ROTATION";
     /// Flag of a body: may fall asleep.
     BODY_MAY_SLEEP = 32, "LS2D_BODY_MAY_SLEEP";
-    /// Flag of a body: its mass is given instead of computed from its shapes.
+    /// Flag of a body: the fields `mass`, `mass_centre` and `mass_gyration` give its mass. Without this flag, its mass
+    /// is computed from its shapes.
     BODY_GIVEN_MASS = 64, "LS2D_BODY_GIVEN_MASS";
     /// `ls2d_body_def.continuous`: no continuous collision detection.
     SWEEP_OFF = 0, "LS2D_SWEEP_OFF";
@@ -71,11 +72,11 @@ records! {
         velocity: RawVec2,
         /// Angular velocity in rad/s, counter-clockwise.
         angular_velocity: RawFx,
-        /// Mass in kg. Read only with `LS2D_BODY_GIVEN_MASS`.
+        /// Mass in kg, 1e-5 to 2^30. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass: RawFx,
         /// Centre of mass in the body's frame, in metres. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass_centre: RawVec2,
-        /// Radius of gyration in metres. Read only with `LS2D_BODY_GIVEN_MASS`.
+        /// Radius of gyration about the centre of mass in metres, 0.002 to 512. Read only with `LS2D_BODY_GIVEN_MASS`.
         mass_gyration: RawFx,
         /// Decay rate of the velocity, per second.
         linear_damping: RawFx,
@@ -87,7 +88,7 @@ records! {
         sleep_speed: RawFx,
         /// A number that the game may choose freely.
         user_data: u64,
-        /// Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros. All zeros for no name.
+        /// Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, padded with zeros. All zeros mean no name.
         name: [u8; 16],
     }
 
@@ -151,7 +152,7 @@ records! {
         centre: RawVec2,
         /// Radius in metres within which the impulse is full.
         radius: RawFx,
-        /// Distance in metres beyond the radius over which the impulse falls to 0.
+        /// Width in metres of the ring outside of the radius in which the impulse falls to 0.
         falloff: RawFx,
         /// Impulse in N s per metre of the width of a shape, as seen from the centre.
         impulse: RawFx,

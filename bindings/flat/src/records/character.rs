@@ -26,9 +26,9 @@ records! {
         size: u32,
         /// Steepest slope that counts as ground, measured from the horizontal.
         slope_max: RawAngle,
-        /// Height in metres of steps that the character climbs without a jump.
+        /// Height in metres of steps that the character climbs without a jump, 0 to 100.
         step_height: RawFx,
-        /// Largest descent of the ground within a tick, in metres, that the character follows.
+        /// Largest descent of the ground within a tick that the character follows, in metres, 0 to 100.
         snap_distance: RawFx,
         /// Geometry of the character; other fields of the definition have no effect.
         shape: RawShapeDef,

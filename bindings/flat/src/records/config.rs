@@ -26,44 +26,47 @@ records! {
         size: u32,
         /// Ticks per second, 10 to 1000.
         tick_rate: u32,
-        /// Gravity in m/s².
+        /// Gravity in m/s², within ±100 000 on each axis.
         gravity: RawVec2,
-        /// Number of sub-steps of a tick.
+        /// Number of sub-steps of a tick, 1 to 64. `tick_rate` times `sub_steps` is 60 to 4000.
         sub_steps: u32,
-        /// Number of solver iterations of a sub-step.
+        /// Number of solver iterations of a sub-step, 1 to 16.
         iterations: u32,
         /// `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`.
         contact: u32,
         /// Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
         flags: u32,
-        /// Stiffness of soft contacts in Hz; for Baumgarte contacts, share of the overlap corrected in each sub-step.
+        /// Stiffness of soft contacts in Hz, 1 to 1000. For Baumgarte contacts, share of the overlap corrected in each
+        /// sub-step, 0 to 1.
         contact_stiffness: RawFx,
-        /// Damping ratio of soft contacts; for Baumgarte contacts, overlap in metres that is not corrected.
+        /// Damping ratio of soft contacts, 0 to 100. For Baumgarte contacts, overlap in metres that is not corrected, 0
+        /// to 1.
         contact_damping: RawFx,
-        /// Largest speed in m/s with which contacts push shapes apart.
+        /// Largest speed in m/s with which contacts push shapes apart, 0 to 400.
         contact_push_speed: RawFx,
-        /// Stiffness of joints in Hz.
+        /// Stiffness of joints in Hz, 1 to 1000.
         joint_hertz: RawFx,
-        /// Damping ratio of joints.
+        /// Damping ratio of joints, 0 to 100.
         joint_damping_ratio: RawFx,
-        /// Approach speed in m/s below which shapes do not bounce.
+        /// Approach speed in m/s below which shapes do not bounce, 0 to 400.
         restitution_threshold: RawFx,
-        /// Largest speed of a body in m/s.
+        /// Largest speed of a body in m/s, 1 to 400. Below 27 ticks per second, also at most 15 m per tick.
         speed_max: RawFx,
-        /// Distance in metres within which shapes get contact points before they touch. The distance is larger for
-        /// shapes that approach each other.
+        /// Distance in metres within which shapes get contact points before they touch, 0.001 to 1. The distance is
+        /// larger for shapes that approach each other.
         speculative_distance: RawFx,
-        /// Largest margin in metres of the bounding boxes in the broad phase.
+        /// Largest margin in metres of the bounding boxes in the broad phase, 0.001 to 10.
         fat_margin: RawFx,
-        /// Lowest approach speed of a hit event in m/s.
+        /// Lowest approach speed of a hit event in m/s, 0 to 400.
         hit_speed: RawFx,
-        /// Largest number of bodies.
+        /// Largest number of bodies, at most 2^20.
         body_limit: u32,
-        /// Largest number of shapes.
+        /// Largest number of shapes, at most 2^20.
         shape_limit: u32,
-        /// Largest number of joints.
+        /// Largest number of joints, at most 2^20.
         joint_limit: u32,
-        /// Largest number of pairs of shapes with overlapping fat AABBs in a tick. Further pairs are left out.
+        /// Largest number of pairs of shapes with overlapping fat AABBs in a tick, at most 2^20. A tick with more pairs
+        /// ignores those of the shapes in the largest slots, and counts as a fault.
         pair_limit: u32,
     }
 }

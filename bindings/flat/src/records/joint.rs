@@ -35,7 +35,8 @@ constants! {
     JOINT_ENABLED = 2, "LS2D_JOINT_ENABLED";
     /// Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel).
     JOINT_LIMIT = 4, "LS2D_JOINT_LIMIT";
-    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; for the angle: motor).
+    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel, and for the angle of a
+    /// motor joint).
     JOINT_MOTOR = 8, "LS2D_JOINT_MOTOR";
     /// Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
     /// wheel).
@@ -70,9 +71,9 @@ records! {
         kind: u32,
         /// `LS2D_JOINT_` flags.
         flags: u32,
-        /// Number of teeth of a gear's wheel on body A.
+        /// Number of teeth of a gear's wheel on body A: 1 to 1000, or -1 to -1000 for a ring around the other wheel.
         teeth_a: i32,
-        /// Number of teeth of a gear's wheel on body B.
+        /// Number of teeth of a gear's wheel on body B, in the same range.
         teeth_b: i32,
         /// Angle of the joint's frame on A, in the frame of body A.
         angle_a: RawAngle,
@@ -88,25 +89,26 @@ records! {
         anchor_a: RawVec2,
         /// Anchor in the frame of body B, in metres.
         anchor_b: RawVec2,
-        /// Lower limit: of the angle in rad (revolute), or of the translation or length in m.
+        /// Lower limit of the angle in rad (revolute), of the translation in m (prismatic, wheel) or of the length in m
+        /// (distance).
         limit_lower: RawFx,
         /// Upper limit, in the unit of the lower one.
         limit_upper: RawFx,
         /// Target speed of the motor: in rad/s (revolute, wheel, motor), or m/s (prismatic, distance).
         motor_speed: RawFx,
-        /// Largest torque of the motor in N m, or largest force in N.
+        /// Largest torque of the motor in N m (revolute, wheel, motor), or largest force in N (prismatic, distance).
         motor_max: RawFx,
         /// Frequency of the spring in Hz.
         spring_hertz: RawFx,
         /// Damping ratio of the spring.
         spring_damping_ratio: RawFx,
-        /// Rest position of the spring: in rad (revolute), or m.
+        /// Rest position of the spring, in rad (revolute) or in m (prismatic, distance, wheel).
         spring_target: RawFx,
-        /// Smallest force of the spring in N.
+        /// Smallest force of the spring in N, 0 or less. Positive forces push the anchors apart.
         spring_force_lower: RawFx,
-        /// Largest force of the spring in N.
+        /// Largest force of the spring in N, 0 or more.
         spring_force_upper: RawFx,
-        /// Length of a rod or of the rope of a pulley in metres.
+        /// Length in metres that a rod holds (distance), or of the rope (pulley).
         length: RawFx,
         /// Stiffness in Hz of the rigid constraints of the joint.
         hertz: RawFx,

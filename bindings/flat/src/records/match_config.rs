@@ -35,8 +35,8 @@ impl RawMatchConfig {
         }
     }
 
-    /// The intervals of saves and of comparisons. The defaults are those of `lockstep2d::peer`, because peers compare
-    /// states only in ticks at which both check.
+    /// The intervals in ticks at which states are saved and compared. The defaults equal those of `lockstep2d::peer`,
+    /// because two peers compare their states only in ticks at which both of them check.
     fn intervals(&self) -> Outcome<(u16, u16)> {
         let check: u16 = narrow("check_interval", self.check_interval)?;
         let divides = |save: &u16| if check == 0 { 60_u16 } else { check }.is_multiple_of(*save);

@@ -27,7 +27,7 @@ constants! {
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
     /// Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
-    /// Request: simulate `tick` with the inputs.
+    /// Request: simulate `tick` with the inputs that come with this request.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
     /// Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
     /// hash of the current state to `ls2d_replay_check`.
@@ -37,7 +37,8 @@ constants! {
     /// Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
     /// ticks.
     EVENT_STATUS = 0, "LS2D_EVENT_STATUS";
-    /// Event: voters, seats, start or end of the match have changed. `value` counts the changes.
+    /// Event: voters, seats, start or end of the match have changed. `value` is the number of the new view, which each
+    /// change increases by one.
     EVENT_VIEW = 1, "LS2D_EVENT_VIEW";
     /// Event: `peer` has `seat` from `tick` on.
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
@@ -55,11 +56,11 @@ constants! {
     /// Event: after `tick` ticks, the state of `peer` has the hash `theirs`, and the state of this peer the hash
     /// `ours`.
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
-    /// Event: `peer` has issued two different inputs for `tick`.
+    /// Event: `peer` has issued two different inputs for `tick`. The input that arrived first counts.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
     /// Event: this peer is so far behind that the others may have dropped inputs that it lacks. It has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
-    /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
+    /// Event: the contact refuses the request to join. `value` is the reason, an `LS2D_REFUSED_` constant.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
     /// Event: the state after `tick` ticks was downloaded. `value` is the handle of its bytes, which the caller frees.
     /// Restore this state before you fulfil the next request.
@@ -78,7 +79,7 @@ constants! {
     MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
     /// Status: follows the match.
     MATCH_WATCHING = 1, "LS2D_MATCH_WATCHING";
-    /// Status: has a seat, or is a dedicated server, and waits for the start.
+    /// Status: has a seat, or is a dedicated server, in a match that has not begun.
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
@@ -101,7 +102,7 @@ constants! {
 }
 
 records! {
-    /// Bounds on the cost of reading and playing a replay. `ls2d_limits_init` sets the defaults.
+    /// Upper limits on the size of a replay and on the cost of playing it. `ls2d_limits_init` sets the defaults.
     struct RawLimits = "ls2d_limits" {
         /// Size of this struct in bytes.
         size: u32,
@@ -113,7 +114,7 @@ records! {
         setup_bytes: u32,
         /// Largest number of players.
         players: u32,
-        /// Largest number of bytes of a block, which has the inputs between two checkpoints.
+        /// Largest number of bytes of a block, the part of the file with the inputs between two checkpoints.
         block_bytes: u32,
         /// Largest number of ticks between checkpoints.
         block_ticks: u32,
@@ -127,7 +128,7 @@ records! {
         total_work: u64,
     }
 
-    /// Result of verifying a replay. Any other verdict than `LS2D_MATCH` is a failure.
+    /// Result of verifying a replay. Every verdict except `LS2D_MATCH` means that the replay is not verified.
     struct RawVerdict = "ls2d_verdict" {
         /// `LS2D_MATCH` and so on.
         kind: u32,
@@ -148,17 +149,17 @@ records! {
         seats: u32,
         /// Number of seats that this peer plays; 0 for a spectator or a dedicated server.
         own_seats: u32,
-        /// Number of seats that have to be taken before the first tick. Seats of the host count.
+        /// Number of seats that have to be taken before the first tick, including those of the host.
         start_with: u32,
         /// Bytes of an input, 1 to 512.
         input_bytes: u32,
-        /// Duration of a tick in microseconds.
+        /// Duration of a tick in microseconds, 1000 to 1 000 000.
         tick_micros: u32,
-        /// Number of ticks that may be played with guessed inputs; 0 is lockstep.
+        /// Number of ticks that may be played with guessed inputs of other peers, 0 to 32; 0 means lockstep.
         guess: u32,
-        /// Smallest delay of inputs in ticks.
+        /// Smallest delay of this peer's own inputs in ticks. The delay follows the latency.
         delay_min: u32,
-        /// Largest delay of inputs in ticks.
+        /// Largest delay of this peer's own inputs in ticks, at most 60.
         delay_max: u32,
         /// Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1
         /// with guessed inputs; in lockstep, the largest divisor of `check_interval` up to 8, or 6 if `check_interval`
@@ -168,16 +169,16 @@ records! {
         /// the interval of a Rust `Peer`: the largest multiple of `save_interval` up to 10, or `save_interval` if it is
         /// more than 10.
         check_interval: u32,
-        /// Number of ticks that may be played beyond the last final tick.
+        /// Number of ticks that may be played beyond the last final tick, at least 16.
         history: u32,
-        /// Minimum number of final ticks whose inputs are kept.
+        /// Minimum number of final ticks whose inputs are kept for peers that return, at least `history`.
         log_ticks: u32,
-        /// Number of ticks between the agreement that a peer joins and its first tick, in addition to three round
-        /// trips.
+        /// When a peer joins, its first tick lies three round trips and this number of ticks after the agreement on its
+        /// seat.
         seat_lead: u32,
         /// A peer may get a seat if it lags by at most this many ticks.
         seat_within: u32,
-        /// Random number of this peer, new for each process.
+        /// Number that identifies this peer. Choose a new random number in each process.
         peer: u32,
         /// Tag of the match: packets with another tag are ignored.
         match_tag: u64,

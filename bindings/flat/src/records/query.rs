@@ -30,13 +30,13 @@ records! {
         size: u32,
         /// Flags: `LS2D_QUERY_SENSORS` or 0.
         flags: u32,
-        /// `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in.
+        /// Treatment of shapes that a ray or a cast starts in: `LS2D_OVERLAP_RESIST` and so on.
         initial_overlap: u32,
         /// Number of bodies in `except`, at most 8.
         except_count: u32,
-        /// Categories that the query belongs to.
+        /// Categories of the query: a shape is seen only if its `mask` has one of them.
         category: u64,
-        /// Categories that the query sees.
+        /// Categories of shapes that the query sees.
         mask: u64,
         /// Bodies that the query does not see.
         except: [RawBody; 8],

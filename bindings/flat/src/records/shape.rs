@@ -20,7 +20,7 @@ constants! {
     /// Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`.
     CAPSULE = 3, "LS2D_CAPSULE";
     /// Kind of a shape: a link of a chain, made by `ls2d_chain_links`. It is a line from `points[0]` to `points[1]`.
-    /// The far ends of the links before and after it are `points[2]` and `points[3]`.
+    /// The far end of the link before it is `points[2]`, and that of the link after it `points[3]`.
     LINK = 4, "LS2D_LINK";
     /// Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`.
     HULL = 5, "LS2D_HULL";
@@ -28,7 +28,7 @@ constants! {
     RECTANGLE = 6, "LS2D_RECTANGLE";
     /// Flag of a shape: detects overlaps, and does not collide.
     SHAPE_SENSOR = 1, "LS2D_SHAPE_SENSOR";
-    /// Flag of a shape: other shapes pass through it in the direction `one_way`.
+    /// Flag of a shape: other shapes pass through it if they move in the direction `one_way`.
     SHAPE_ONE_WAY = 2, "LS2D_SHAPE_ONE_WAY";
     /// Flag of a shape: has its own `restitution_threshold`.
     SHAPE_RESTITUTION_THRESHOLD = 4, "LS2D_SHAPE_RESTITUTION_THRESHOLD";
@@ -36,13 +36,14 @@ constants! {
     SHAPE_AREA = 8, "LS2D_SHAPE_AREA";
     /// Flag of a shape: the area attracts bodies to its centre.
     SHAPE_ATTRACTION = 16, "LS2D_SHAPE_ATTRACTION";
-    /// Flag of a shape: contact events include this shape.
+    /// Flag of a shape: its contacts are reported in contact events. It suffices that one of the two shapes has this
+    /// flag.
     SHAPE_CONTACT_EVENTS = 32, "LS2D_SHAPE_CONTACT_EVENTS";
-    /// Flag of a shape: hit events include this shape.
+    /// Flag of a shape: its hits are reported in hit events. It suffices that one of the two shapes has this flag.
     SHAPE_HIT_EVENTS = 64, "LS2D_SHAPE_HIT_EVENTS";
     /// Flag of a shape: sensors detect it.
     SHAPE_SENSOR_EVENTS = 128, "LS2D_SHAPE_SENSOR_EVENTS";
-    /// Flag of a shape: a sensor that detects sensors, too.
+    /// Flag of a shape: a sensor that also detects other sensors.
     SHAPE_DETECT_SENSORS = 256, "LS2D_SHAPE_DETECT_SENSORS";
     /// Flag of a link: it has a neighbour before `points[0]`.
     SHAPE_LINK_BEFORE = 512, "LS2D_SHAPE_LINK_BEFORE";
@@ -50,22 +51,24 @@ constants! {
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
     /// Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing, for the values of two shapes: the mean. If the shapes have different rules, the rule with the
-    /// larger number applies.
+    /// Rule for mixing the values of two shapes: the mean. If the shapes have different rules, the rule whose constant
+    /// is larger applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
-    /// Rule of mixing: the square root of the product.
+    /// Rule for mixing the values of two shapes: the square root of the product.
     MIX_GEOMETRIC_MEAN = 1, "LS2D_MIX_GEOMETRIC_MEAN";
-    /// Rule of mixing: the smaller value.
+    /// Rule for mixing the values of two shapes: the smaller value.
     MIX_MINIMUM = 2, "LS2D_MIX_MINIMUM";
-    /// Rule of mixing: the product.
+    /// Rule for mixing the values of two shapes: the product.
     MIX_PRODUCT = 3, "LS2D_MIX_PRODUCT";
-    /// Rule of mixing: the larger value.
+    /// Rule for mixing the values of two shapes: the larger value.
     MIX_MAXIMUM = 4, "LS2D_MIX_MAXIMUM";
-    /// Attraction that is constant beyond `attraction_radius`.
+    /// `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is constant.
     FALLOFF_CONSTANT = 0, "LS2D_FALLOFF_CONSTANT";
-    /// Attraction that is in inverse proportion to the distance beyond `attraction_radius`.
+    /// `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is in inverse proportion to the
+    /// distance from the centre.
     FALLOFF_INVERSE = 1, "LS2D_FALLOFF_INVERSE";
-    /// Attraction that is in inverse proportion to the square of the distance beyond `attraction_radius`.
+    /// `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is in inverse proportion to the
+    /// square of the distance from the centre.
     FALLOFF_INVERSE_SQUARE = 2, "LS2D_FALLOFF_INVERSE_SQUARE";
 }
 
@@ -90,18 +93,18 @@ records! {
         radius: RawFx,
         /// Centre of the shape in the body's frame, in metres.
         offset: RawVec2,
-        /// Mass per area in kg/m².
+        /// Mass per area in kg/m², 0 to 2^20.
         density: RawFx,
-        /// Friction coefficient.
+        /// Friction coefficient, 0 to 16.
         friction: RawFx,
-        /// Fraction of the approach speed that a bounce returns.
+        /// Fraction of the approach speed that a bounce returns, 0 to 1.5.
         restitution: RawFx,
-        /// Approach speed in m/s below which the shape does not bounce. Read only with
+        /// Approach speed in m/s below which the shape does not bounce, 0 to 400. Read only with
         /// `LS2D_SHAPE_RESTITUTION_THRESHOLD`.
         restitution_threshold: RawFx,
-        /// Rolling resistance of a round shape, as a fraction of its radius.
+        /// Rolling resistance of a round shape, as a fraction of its radius, 0 to 1.
         rolling_resistance: RawFx,
-        /// Speed of the surface around the shape, clockwise, in m/s.
+        /// Speed of the surface around the shape, clockwise, in m/s, within ±400.
         surface_speed: RawFx,
         /// Categories that the shape belongs to, one bit each.
         category: u64,
@@ -114,23 +117,27 @@ records! {
         friction_mixing: u32,
         /// `LS2D_MIX_AVERAGE` and so on, for restitution.
         restitution_mixing: u32,
-        /// Direction in the body's frame in which other shapes pass through. Read only with `LS2D_SHAPE_ONE_WAY`.
+        /// Direction in the body's frame in which other shapes pass through this one. Read only with
+        /// `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
-        /// Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body.
+        /// Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body, within ±10 000.
         area_acceleration: RawVec2,
-        /// Force in N per m² of the part of a body that is in the area, along the axes of the area's body.
+        /// Force in N per m² of the part of a body that is in the area, along the axes of the area's body, within
+        /// ±2^20.
         area_force: RawVec2,
-        /// Velocity of the medium relative to the area's body in m/s, along the axes of this body.
+        /// Velocity of the medium relative to the area's body in m/s, along the axes of this body, within ±400.
         area_flow: RawVec2,
-        /// Rate per second at which the velocity of a body in the area approaches the velocity of the medium.
+        /// Rate per second, 0 to 1000, at which the velocity of a body in the area approaches that of the medium.
         area_linear_drag: RawFx,
-        /// Rate per second at which the angular velocity of a body in the area approaches that of the area's body.
+        /// Rate per second, 0 to 1000, at which the angular velocity of a body in the area approaches that of the
+        /// area's body.
         area_angular_drag: RawFx,
-        /// Density of the medium in kg/m², for buoyancy.
+        /// Density of the medium in kg/m², 0 to 2^20, for buoyancy.
         area_density: RawFx,
-        /// Acceleration in m/s² towards the centre of the area, at `attraction_radius`.
+        /// Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`.
         attraction_acceleration: RawFx,
-        /// Distance in metres with full attraction. Nearer to the centre the attraction decreases linearly to 0.
+        /// Distance from the centre in metres at which the acceleration is `attraction_acceleration`. Nearer to the
+        /// centre, it decreases linearly to 0; farther away, `attraction_falloff` applies.
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,
@@ -269,7 +276,7 @@ impl RawShapeDef {
         }
     }
 
-    /// Converts the geometry. Links of chains are not validated here but by the world.
+    /// Converts the geometry. The geometry of links is not validated here; the world validates it.
     pub(crate) fn geometry(&self) -> Outcome<Geometry> {
         check_size::<Self>(self.size)?;
         if self.kind != LINK {

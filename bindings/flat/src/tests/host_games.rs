@@ -11,7 +11,8 @@ use crate::*;
 const TICKS: u64 = 500;
 const PLAYERS: usize = 3;
 
-/// A weighted sum of the inputs of each player, and the number of absences.
+/// A game whose state is a weighted sum of the inputs of each player, and the number of absences, summed over players
+/// and ticks.
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 struct Sums {
     sums: [u64; PLAYERS],

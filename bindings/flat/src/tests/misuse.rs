@@ -45,7 +45,7 @@ fn the_last_error_says_why() {
     assert_eq!(&text[..length], b"no object has the handle 77");
     done(ls2d_last_error(Out::all(&mut text), 2, Out::of(&mut length)));
     assert_eq!(length, 27, "the length of the whole text");
-    // A call that returns nothing is no failure.
+    // A call with nothing to return is not a failure, and keeps the text of the last failure.
     assert_eq!(border::guard(|| Err(Failure::none())), Status::None as i32);
     done(ls2d_last_error(Out::all(&mut text), 64, Out::of(&mut length)));
     assert_eq!(&text[..length], b"no object has the handle 77");

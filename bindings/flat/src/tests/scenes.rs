@@ -253,7 +253,7 @@ fn the_state_of_a_character_has_the_shapes_that_it_passes() {
     assert!(RawMoverState { passing_count: 0, reserved: 1, ..raw }.state().is_err());
 }
 
-/// A call with a short buffer or a wrong body adds nothing.
+/// A call whose buffer is too short, or in which one body is wrong, adds nothing.
 #[test]
 fn bodies_and_joints_are_added_together_or_not_at_all() {
     let mut world = 0;

@@ -1,4 +1,4 @@
-// A member that is alone in a room, so that only the relay sends it frames: node silent.mjs URL
+// A member that is alone in a room, so that it gets frames only from the relay: node silent.mjs URL
 //
 // The member keeps its connection for more than 15 seconds. If the relay did not answer, the member would reconnect
 // then.

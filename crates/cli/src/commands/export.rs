@@ -170,7 +170,7 @@ impl Arguments {
     }
 }
 
-/// A replay that is played up to the tick that is needed next.
+/// A replay that is being played. Each export plays it up to the tick that it needs next.
 struct Replay<'a, G: Game> {
     verified: VerifiedReplay<'a, G>,
     path: &'a PathBuf,

@@ -63,7 +63,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         play_lines(&mut copy, path, arguments, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // Records at most one tick beyond the limit, because that tick already fails the verification.
+    // Records at most one tick beyond the limit, because one tick is enough to make the verification fail.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle, limits).map_err(|error| error.of_file(&arguments.output))?;

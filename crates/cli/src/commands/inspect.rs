@@ -106,8 +106,9 @@ fn state_of_replay<G: Game>(
     Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })
 }
 
-/// The state that the writer of the report had. It may differ from the state that results from the inputs. If the
-/// report has no save of the tick, the inputs of the report's replay are played.
+/// The state after the requested tick, as the writer of the report had it: the save in the report, which may differ
+/// from the state that results from the inputs. If the report has no save of the tick, the inputs of the report's
+/// replay are played.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,

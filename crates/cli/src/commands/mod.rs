@@ -29,8 +29,8 @@ pub(crate) struct Row<G: Game> {
     pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,
 }
 
-/// Creates a [`Row`] for each `"name" => module`. If `(argument)` follows, the game may panic while it plays the file
-/// of this argument, and the panic becomes an error that names the file.
+/// Creates a [`Row`] for each `"name" => module`. If `(argument)` follows the module, a panic of the game becomes an
+/// error that names the file in this argument.
 macro_rules! rows {
     ($($name:literal => $module:ident $(($file:ident))?),+ $(,)?) => {
         vec![$(Row {

@@ -58,7 +58,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let bytes = context.load(&arguments.file)?;
     let keyframes = arguments.keyframes.as_deref().map(read_keyframes).transpose()?.flatten();
-    // With a keyframe file, the interval is 1, which `use_keyframes` replaces by the interval of the file.
+    // If there is a keyframe file, the interval 1 is only a placeholder: `use_keyframes` replaces it by the interval of
+    // the file.
     let interval = if keyframes.is_some() { 1 } else { arguments.interval };
     let options = TimelineOptions { interval, ..TimelineOptions::default() };
     let mut timeline = Timeline::<G>::open(&bytes, &options, context.limits())

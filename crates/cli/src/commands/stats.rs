@@ -52,7 +52,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
-        // After a step that fails, the game no longer has the state of the last valid tick.
+        // No hash is printed after a step that failed, because the game no longer has the state of the last valid tick.
         let state = match failed {
             None => format!(", state {}", replay.game().state_hash()),
             Some(_) => String::new(),
@@ -63,7 +63,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }
 
-/// A line of JSON. The names of the figures need no escapes.
+/// Formats a line of JSON. The names of the figures contain no characters that JSON would escape.
 fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
     line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));

@@ -87,7 +87,8 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     let mut options = CheckOptions::default();
     if !arguments.all {
-        // `Variant::Again` distinguishes a game that is not deterministic from a save that lacks a part of the state.
+        // `Variant::Again` only plays the inputs again. If it differs, the game is not deterministic; if only
+        // `Variant::Reloaded` differs, the save lacks a part of the state.
         options.variants = vec![Variant::Again, Variant::Reloaded];
         options.variants.extend(arguments.rollback.then_some(Variant::RolledBack));
     }
@@ -101,7 +102,7 @@ fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     }
 }
 
-/// Number of ticks of a replay, up to the first whose inputs cannot be read.
+/// Number of ticks of a replay before the first tick whose inputs cannot be read.
 fn ticks(file: &[u8], limits: &Limits) -> u64 {
     let Ok(mut inputs) = TickInputs::open(file, limits) else {
         return 0;

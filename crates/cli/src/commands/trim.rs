@@ -45,7 +45,8 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let Whole { part, interval, damage } =
         whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
-    // Ticks are kept only if the checkpoint of their block agrees.
+    // Plays up to the end of the block of the last requested tick, because ticks are kept only if the checkpoint of
+    // their block agrees.
     let checked = most.checked_next_multiple_of(interval).unwrap_or(u64::MAX);
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let again = |ticks| Copy::<G>::new(part, ticks, limits).map_err(of_file);

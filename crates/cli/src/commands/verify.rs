@@ -133,7 +133,8 @@ impl LimitArguments {
     }
 }
 
-/// Adds the limits of the tool to the help of `command`, which must have the arguments of [`LimitArguments`].
+/// Adds `limits` to the help of `command`, as the default values of the arguments of [`LimitArguments`]. Panics if
+/// `command` lacks one of these arguments.
 pub fn with_defaults(command: Command, limits: &Limits) -> Command {
     let defaults = [
         ("max_bytes", limits.file_bytes),

@@ -10,7 +10,7 @@ impl fmt::Display for Hex<'_> {
     }
 }
 
-/// Reads exactly `N` bytes. Digits in upper case are refused.
+/// Reads exactly `N` bytes. Returns `None` for any other text, also for digits in upper case.
 pub(super) fn parse<const N: usize>(text: &str) -> Option<[u8; N]> {
     let digits = text.as_bytes();
     if digits.len() != 2 * N {

@@ -13,7 +13,7 @@ use crate::identity::GameDigest;
 /// Beginning of the line of a secret key file.
 const PREFIX: &str = "lockstep2d secret key 1 ";
 
-/// A key to sign games with. `str::parse` reads [`SecretKey::text`].
+/// A key to sign games with. `str::parse` reads the text that [`SecretKey::text`] returns.
 ///
 /// The module [`signature`](crate::signature) has an example.
 pub struct SecretKey(SigningKey);
@@ -70,7 +70,7 @@ impl FromStr for SecretKey {
     }
 }
 
-/// A public key: 32 bytes, shown as 64 hexadecimal digits. The bytes need not be a valid key.
+/// A public key: 32 bytes, shown as 64 hexadecimal digits. The type does not check that the bytes are a valid key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PublicKey(pub [u8; 32]);
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::signatures::SIGNATURES_MAX;
 
-/// A line of a file of keys or signatures that cannot be read.
+/// Error: a line of a file of keys or signatures cannot be read.
 ///
 /// ```
 /// use lockstep2d_cli::signature::{AllowedKeys, Flaw, LineError};
@@ -23,11 +23,11 @@ pub struct LineError {
 /// Flaw of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
-    /// The line is not a signature: `lockstep2d signature 1 KEY SIGNATURE`.
+    /// The line does not have the form of a signature: `lockstep2d signature 1 KEY SIGNATURE`.
     NoSignature,
-    /// The line is not a secret key: `lockstep2d secret key 1 SEED`.
+    /// The line does not have the form of a secret key: `lockstep2d secret key 1 SEED`.
     NoSecretKey,
-    /// The line is not an allowed key: `KEY NAME`.
+    /// The line does not have the form of an allowed key: `KEY NAME`.
     NoAllowedKey,
     /// The digits are not a public key of Ed25519, or are a weak public key.
     InvalidKey,

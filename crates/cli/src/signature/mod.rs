@@ -11,7 +11,7 @@
 //! use lockstep2d_cli::signature::{AllowedKeys, GameDigest, SecretKey, Signatures};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // The player: signs the replay of a game.
+//! // The player signs the replay of a game.
 //! let replay = Recording::<Sandbox>::start(&Default::default(), 60)?.finish()?;
 //! let secret = SecretKey::generate()?;
 //! let mut signatures = Signatures::default();
@@ -19,7 +19,7 @@
 //! signatures.add(secret.sign(&digest.map_err(|verdict| verdict.to_string())?))?;
 //! let upload = (replay, signatures.to_string());
 //!
-//! // The server: knows the public key of the player.
+//! // The server knows the public key of the player, and checks the signature.
 //! let keys: AllowedKeys = format!("{} alice\n", secret.public_key()).parse()?;
 //! let digest = GameDigest::of_replay::<Sandbox>(&upload.0, &Limits::default());
 //! let check = keys.check(&upload.1.parse()?, &digest.map_err(|verdict| verdict.to_string())?);

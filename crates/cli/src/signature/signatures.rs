@@ -21,7 +21,7 @@ const SUFFIX: &str = ".sig";
 /// Beginning of every line of a signature file.
 const PREFIX: &str = "lockstep2d signature 1 ";
 
-/// Prefix of the signed message, which separates it from other messages signed with the same key.
+/// Prefix of the signed message, which distinguishes it from other messages signed with the same key.
 const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
 
 /// The signature of one key.
@@ -33,8 +33,8 @@ pub struct Signature {
     pub bytes: [u8; 64],
 }
 
-/// The signatures of a replay: at most one by each key, in the order of the lines of the signature file. The text is
-/// canonical: each `Signatures` has exactly one.
+/// The signatures of a replay: at most one by each key, in the order of the lines of the signature file. The text of
+/// the file is canonical: each value of this type has exactly one text.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};

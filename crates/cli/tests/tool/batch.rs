@@ -23,7 +23,8 @@ fn explode(now: bool) {
     assert!(!now, "in a setup");
 }
 
-/// A counter that panics when an input or the start value in the setup is [`FUSE`]. It is not `Send`.
+/// A counter that panics when an input or the start value in the setup is [`FUSE`]. It is not `Send`, because the tools
+/// must not require this of a game.
 pub(crate) struct Bomb(Rc<Cell<Counter>>);
 
 impl Bomb {

@@ -86,7 +86,7 @@ fn what_is_no_evidence_is_trouble() {
     assert!(outcome.err.contains("malformed"), "{}", outcome.err);
 }
 
-/// A game with texts as inputs, which have no effect.
+/// A game whose inputs are texts of any length. They have no effect on the state, which is the number of ticks.
 #[derive(Clone, Serialize, Deserialize)]
 struct Shouts(u64);
 
@@ -130,7 +130,8 @@ impl Game for Shouts {
     }
 }
 
-/// Large inputs need short blocks. A command that records them again keeps the interval of the replay.
+/// A block holds at most 16 MiB, so the two inputs of 10 MB need two blocks. A command that records the replay again
+/// must therefore keep its checkpoint interval, which is one tick.
 #[test]
 fn a_replay_with_large_inputs_is_traced_and_stressed() {
     let folder = Folder::new("trace-large");

@@ -88,7 +88,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         assert_eq!(uncached(&run(&arguments)).0, plain);
         assert!(restored());
     }
-    // Copies another entry over the entry `victim`, then replaces it by a folder.
+    // Copies another entry over `victim`. Then replaces `victim` by a folder.
     fs::copy(&whole[1].0, victim).unwrap();
     assert_eq!(uncached(&run(&arguments)).0, plain);
     assert!(restored());

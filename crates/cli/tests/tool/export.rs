@@ -231,7 +231,7 @@ fn states_are_lines_of_json() {
     assert_eq!(fs::read_to_string(&to).unwrap(), outcome.out);
 }
 
-/// Also checks numbers inside enum variants.
+/// The JSON of a state gives each fixed-point number as its bits and as a decimal, also inside enum variants.
 #[test]
 fn numbers_of_a_world_have_bits_and_a_decimal() {
     let outcome = run_sandbox(&["export", &golden("ragdoll"), "--json", "--tick", "60"]);

@@ -29,7 +29,8 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window that fits the world at up to 101 ticks of a range, and at its last tick.
+/// The smallest window that contains the world at some ticks of a range: at most 101 ticks in equal steps from the
+/// first one, and the last tick.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
@@ -197,7 +198,7 @@ fn memory_does_not_grow_with_the_frames() {
     };
     let frames = crate::sweep::size(500, 150);
     let (few, many) = (peak_of(50), peak_of(frames));
-    // The limit of 10 MB is far below the 120 MB that the pixels of 100 frames take.
+    // The limit of 10 MB is far below the size of the pixels of the additional frames: 120 MB for 100 frames.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for {frames}");
 }
 

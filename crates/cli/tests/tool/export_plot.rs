@@ -126,7 +126,8 @@ fn curves_have_the_extremes_of_what_they_show() {
     }
 }
 
-/// The integrator's error in the energy after a time t is `m g² t h / 2`, with the time step h.
+/// The integrator's error in the energy after a time t is `m g² t h / 2`, with the time step h. This is the kinetic
+/// energy times `h / t`.
 #[test]
 fn energy_in_free_fall_is_constant() {
     let svg = plot("free_fall", &[]);
@@ -138,7 +139,8 @@ fn energy_in_free_fall_is_constant() {
     assert!(still < fast / 100.0, "kinetic from {still} to {fast}");
 }
 
-/// At the turning points of a pendulum, its kinetic energy is nearly 0.
+/// At the turning points of a pendulum, its kinetic energy is nearly 0. So its potential energy varies as much as its
+/// kinetic energy.
 #[test]
 fn energy_of_a_pendulum_goes_back_and_forth() {
     let svg = plot("pendulum", &[]);

@@ -23,7 +23,8 @@ fn line(out: &str) -> Value {
 #[test]
 fn every_limit_has_its_flag() {
     let folder = Folder::new("flags");
-    // A tick takes one work unit, and one more for each of the two numbers 1 and -1. So 20 ticks take 60 units.
+    // The work of a tick is 1 plus the absolute values of the two inputs, which are 1 and -1. So 20 ticks take 60
+    // units.
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for _ in 0..20 {
         recording.step(&add(1, -1)).unwrap();
@@ -145,7 +146,7 @@ fn a_panic_is_the_error_of_other_commands_too() {
             assert!(outcome.err.contains(part), "{arguments:?}: {}", outcome.err);
         }
     }
-    // These commands do not count the ticks.
+    // The errors of these commands do not state the number of played ticks.
     for arguments in [
         vec!["seek", &file, "--tick", "13"],
         vec!["fork", &file, "--tick", "13", "-o", &picture],
@@ -219,7 +220,7 @@ impl<const REFUSES: bool> Game for Echo<REFUSES> {
     }
 }
 
-/// Text that would clear the screen and write a line of its own.
+/// Text that would clear the screen of a terminal and show a false result line.
 const FORGERY: &str = "\u{1b}[2J\rA.replay: match\n";
 
 fn assert_escaped(texts: &str, arguments: &[&str]) {

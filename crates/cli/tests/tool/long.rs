@@ -146,7 +146,7 @@ fn signals_say_what_was_at_work_and_lose_no_result() {
         let mut first = String::new();
         out.read_line(&mut first).unwrap();
         assert!(first.starts_with(&format!("{before}: match: ")), "{first}");
-        // The result of the third file has to wait, because the second file has no result yet.
+        // Meanwhile the third file is verified. Its result has to wait, because the second file has no result yet.
         thread::sleep(Duration::from_millis(1500));
         let kill = ["-s", name, &child.id().to_string()].map(String::from);
         assert!(Command::new("kill").args(kill).status().unwrap().success());

@@ -1,4 +1,4 @@
-//! End-to-end tests of the tools: arguments in; files, output and exit codes out.
+//! End-to-end tests of the tools: each test passes arguments, and checks the files, output and exit codes.
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
 #[path = "../../../../tests/replay/counter.rs"]
@@ -99,7 +99,7 @@ fn replay(ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Path of a replay of this repository.
+/// Path of the replay of a scene in the folder `replays` of this repository.
 fn golden(scene: &str) -> String {
     format!("{}/../../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }
@@ -118,7 +118,7 @@ impl Folder {
         self.0.join(name).to_str().unwrap().to_string()
     }
 
-    /// Creates parent folders, and returns the path of the file.
+    /// Writes a file, and creates its parent folders. Returns the path of the file.
     fn write(&self, name: &str, bytes: &[u8]) -> String {
         let path = self.path(name);
         fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();

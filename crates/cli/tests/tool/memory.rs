@@ -15,7 +15,7 @@ use lockstep2d::world::{BodyPose, Command as Edit, Config};
 
 use crate::{Folder, golden, sweep};
 
-/// Peak resident memory in KiB of the tool as its own process.
+/// Runs the tool as its own process. Returns the peak resident memory of this process in KiB.
 pub(crate) fn peak(arguments: &[&str]) -> u64 {
     let mut child = Command::new(env!("CARGO_BIN_EXE_lockstep2d"))
         .args(arguments)
@@ -37,7 +37,7 @@ fn peak_so_far(pid: u32) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// Bodies with one square each.
+/// Edits that add a body with one square at each position.
 fn squares(positions: impl Iterator<Item = (Fx, Fx)>) -> Vec<Edit> {
     let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
@@ -65,7 +65,8 @@ fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     commands
 }
 
-/// A motor joint without springs. The solver does not solve joints of this kind in blocks.
+/// A motor joint without springs. The solver never solves joints of this kind in blocks, so they need no memory for
+/// blocks.
 fn motor() -> Motor {
     Motor::new().linear(Vec2::ZERO, fx!(1)).angular(fx!(0), fx!(1))
 }
@@ -85,8 +86,8 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
     const DEFAULT: &str = "10000000";
-    // The last columns are the number of ticks, the limit of work units for a tick, and the memory in KB. Some rows
-    // have one tick, because a tick of a million joints is slow to record.
+    // The columns are a name, the commands of the setup, the number of ticks, the limit of work units for a tick, and
+    // the memory in KB. Some rows have one tick, because a tick of a million joints is slow to record.
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("20 000 separate bodies", || field(20_000), 10, DEFAULT, 70_000),

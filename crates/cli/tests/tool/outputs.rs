@@ -102,7 +102,7 @@ fn a_full_disk_leaves_the_old_file() {
             if has_old {
                 fs::write(&to, OLD).unwrap();
             }
-            // Limits each file to 512 bytes. The signal is ignored, so that writes fail as on a full disk.
+            // Limits each file to 512 bytes. The signal SIGXFSZ is ignored, so that writes fail as on a full disk.
             let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
             let failed =
                 Command::new("sh").args(["-c", script, "sh", TOOL]).args(forced(&writer)).output().unwrap();
@@ -177,7 +177,8 @@ fn a_redirected_standard_output_is_written_where_it_stands() {
     assert_eq!(names(&folder), ["log"]);
 }
 
-/// A process that is killed after it has linked the target to the temporary file leaves the file under both names.
+/// A process that is killed after it has linked the target to the temporary file leaves the file under both names. The
+/// next writer must not write to this file.
 #[test]
 fn a_published_file_is_no_temporary_file() {
     let folder = Folder::new("outputs-published");
@@ -225,8 +226,8 @@ fn a_killed_process_leaves_the_old_file_and_what_it_recorded() {
     assert_eq!(names(&folder), ["rescued.replay", "x.replay"]);
 }
 
-/// The unfinished file of a killed recorder may be the only recording. So commands must accept it as the input for its
-/// own target, as in `trim x.replay.unfinished -o x.replay`.
+/// The unfinished file of a killed recorder may be the only recording. So commands must accept it as the input even if
+/// their output would use it as the temporary file, as in `trim x.replay.unfinished -o x.replay`.
 #[test]
 fn an_unfinished_file_is_an_input_like_any_other() {
     let folder = Folder::new("outputs-unfinished");

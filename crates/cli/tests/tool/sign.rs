@@ -36,7 +36,8 @@ fn check(folder: &Folder, path: &str, more: &[&str]) -> (Exit, Vec<Value>) {
     (checked.exit, checked.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect())
 }
 
-/// Exit code of `verify --keys`, and for one file the state of its signatures and the signers.
+/// Runs `verify --keys` for one file. Returns the exit code, the state of the file's signatures, and the names that
+/// have signed it.
 fn signers(folder: &Folder, file: &str, more: &[&str]) -> (Exit, String, Vec<String>) {
     let (exit, lines) = check(folder, file, more);
     let names = lines[0]["signed_by"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().into());
@@ -236,7 +237,8 @@ fn a_pipe_beside_a_replay_does_not_block() {
     assert_eq!(signers(&folder, "a.replay", &[]), not_valid("malformed", &[]));
 }
 
-/// The line names the replay and not its signature file, because users match results with replays by these names.
+/// Users match results with replays by the path in each line. So the line must name the replay, and not its signature
+/// file.
 #[cfg(unix)]
 #[test]
 fn a_replay_whose_signatures_cannot_be_read_is_named() {
@@ -268,7 +270,7 @@ fn keys_that_anybody_could_sign_for_are_refused() {
     }
 }
 
-/// The next pseudorandom number, by SplitMix64 without its last multiplication.
+/// The next pseudorandom number, by SplitMix64 without its last multiplication and last shift.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

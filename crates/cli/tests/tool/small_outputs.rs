@@ -182,7 +182,7 @@ fn verify(output: &Output) -> (Vec<String>, String) {
     (lines.lines().map(|line| line.replace("\"cached\":true", "\"cached\":false")).collect(), message(output))
 }
 
-/// A folder of replays, most of which match.
+/// Writes 24 files, most of which are replays that match. Returns the path of their folder.
 fn uploads(folder: &Folder) -> String {
     let bytes = fs::read(golden("box_stack")).unwrap();
     for number in 0..24 {

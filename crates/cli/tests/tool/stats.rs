@@ -83,7 +83,7 @@ fn a_replay_that_is_cut_or_wrong_has_them_as_far_as_it_goes() {
 }
 
 /// After a tick that exceeds a limit of work or differs at a checkpoint, the game no longer has the state of the last
-/// valid tick.
+/// valid tick. So `stats` must not print the hash of the game.
 #[test]
 fn a_wrong_state_has_no_hash() {
     let folder = Folder::new("stats-wrong");

@@ -11,7 +11,7 @@ use serde_json::Value as Json;
 
 use super::{Folder, Outcome, run, run_tool_of};
 
-/// A game whose save lacks its bonuses.
+/// A game whose save lacks the field `bonus`.
 struct Forgetful {
     tick: u64,
     bonus: u64,
@@ -64,7 +64,7 @@ impl Game for Forgetful {
     }
 }
 
-/// The player gets a bonus in tick 20 and scores with it in tick 71.
+/// A replay in which the player gets a bonus in tick 20 and scores with it in tick 71.
 fn forgetful() -> Vec<u8> {
     let mut recording = Recording::<Forgetful>::start(&(), 10).unwrap();
     for tick in 1..=90 {

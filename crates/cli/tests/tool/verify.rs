@@ -127,7 +127,7 @@ fn every_verdict_has_its_json() {
 
 #[test]
 fn a_file_that_diverges_says_where() {
-    // From one tick on, the recorded states are wrong, as if the machine had diverged.
+    // From tick 4 on, the recorded states are wrong, as if the recording machine had diverged.
     let folder = Folder::new("diverged");
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 2).unwrap();
     for tick in 0..6 {

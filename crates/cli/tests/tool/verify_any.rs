@@ -1,4 +1,4 @@
-//! The script `docs/verify-any` passes files that the newest program cannot verify to older programs.
+//! The script `docs/verify-any` runs the newest program, and then, for files that it cannot verify, older programs.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

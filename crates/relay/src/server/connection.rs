@@ -26,10 +26,10 @@ const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 const CODE_MAX: usize = 32;
 /// Number of pings that a silent member receives within the idle time.
 const PINGS: u32 = 3;
-/// Largest size of the write buffer in bytes, in addition to one message. Answers to pings fill it if the client reads
-/// nothing.
+/// Room in the write buffer for answers to pings, in bytes, in addition to one message. The answers collect there while
+/// the client reads nothing.
 const ANSWERS_MAX: usize = 64 * 1024;
-/// Upper bound for the bytes of a member in the list of members.
+/// Upper bound for the size of a member in the text frame with the list of members, in bytes.
 const MEMBER_BYTES: usize = 32;
 
 /// Code and text of a close frame.
@@ -118,9 +118,9 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// The address of the member with this secret. The address is a hash, which does not reveal the secret. The same secret
-/// always gives the same address, also after a lost connection or a restart of the relay. So the relay stores no
-/// addresses.
+/// The address of the member with this secret. `None` if the secret has the wrong length. The address is a hash, which
+/// does not reveal the secret. A secret gives the same address after a lost connection and after a restart of the
+/// relay, so the relay need not store addresses.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()

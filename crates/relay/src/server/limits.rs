@@ -13,14 +13,15 @@ pub struct Limits {
     pub members: usize,
     /// Largest datagram in bytes. A larger datagram closes the connection.
     pub datagram_bytes: usize,
-    /// Maximum memory in bytes of the datagrams queued for a member, including 80 bytes of overhead for each. Beyond
-    /// it, the oldest datagrams are dropped.
+    /// Maximum memory in bytes of the datagrams queued for a member, including 80 bytes of overhead for each. If they
+    /// exceed this limit, the oldest are dropped.
     pub queue_bytes: usize,
-    /// Maximum number of bytes per second from a member, with bursts of one second. Datagrams above this rate are
-    /// dropped. A rate eight times as high closes the connection; fragments and pings count, too.
+    /// Maximum mean number of bytes per second from a member. A burst may have as many bytes as this rate allows in a
+    /// second. Datagrams above the rate are dropped. The connection is closed at eight times the rate; this check also
+    /// counts fragments and pings.
     pub bytes_per_second: u32,
-    /// Maximum number of datagrams per second from a member, with bursts of one second. Datagrams above this rate are
-    /// dropped. A rate eight times as high closes the connection.
+    /// Maximum mean number of datagrams per second from a member. A burst may have as many datagrams as this rate
+    /// allows in a second. Datagrams above the rate are dropped. At eight times the rate, the connection is closed.
     pub datagrams_per_second: u32,
     /// A member that sends nothing for this time is disconnected. In the meantime, it is pinged three times.
     pub idle: Duration,

@@ -1,4 +1,4 @@
-//! [`Meter`]: the traffic of a member.
+//! [`Meter`]: limits the traffic of a member.
 
 use core::time::Duration;
 
@@ -34,8 +34,9 @@ impl Bucket {
         Bucket { per_second, tokens: per_second.saturating_mul(MICROS), last: Duration::ZERO }
     }
 
-    /// Bucket for all bytes of a connection. Frames without a datagram also cost bytes. A member within the rates of
-    /// [`Meter`] stays below this rate, even if each frame has the largest header.
+    /// Bucket for all bytes of a connection, including headers, fragments and pings. Its rate is the number of bytes of
+    /// a member that sends at [`EXCESS`] times both rates, with the largest headers. So this bucket closes a connection
+    /// that [`Meter`] would leave open only if the member sends fragments of messages.
     pub(super) fn of_connection(bytes_per_second: u32, datagrams_per_second: u32) -> Self {
         let headers = u64::from(datagrams_per_second) * FRAME_HEADER;
         Bucket::new((u64::from(bytes_per_second) + headers) * EXCESS)
@@ -55,9 +56,10 @@ impl Bucket {
 
 #[derive(Clone, Debug)]
 pub(super) struct Meter {
-    /// Buckets of bytes and of datagrams. If one of them is empty, a datagram is dropped.
+    /// Buckets of bytes and of datagrams. If one of them holds too few units for a datagram, the datagram is dropped.
     allowed: [Bucket; 2],
-    /// Buckets with [`EXCESS`] times the rates of `allowed`. If one of them is empty, the connection is closed.
+    /// Buckets with [`EXCESS`] times the rates of `allowed`. If one of them holds too few units, the connection is
+    /// closed.
     tolerated: [Bucket; 2],
 }
 

@@ -5,8 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::Notify;
 
-/// Memory of a frame besides its contents: its entry in a deque that may be half empty, and the overhead of its
-/// allocation. If this overhead were not counted, a flood of empty datagrams would take many times the limit.
+/// Memory of a frame besides its contents, in bytes: its entry in a deque that may be half empty, and the overhead of
+/// its allocation. If this memory were not counted, a flood of empty datagrams would take many times the limit.
 const FRAME_OVERHEAD: usize = 80;
 
 /// Frames that wait for a member. Their total memory is limited.
@@ -20,7 +20,8 @@ pub(super) struct Queue {
 struct State {
     frames: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// Whether the members have changed since the last message about them.
+    /// Whether the members of the room have changed since the last text frame with the members was taken from the
+    /// queue.
     room_changed: bool,
     /// Whether a newer connection of this member replaces this one.
     replaced: bool,

@@ -72,8 +72,9 @@ fn begin<W: Write>(writer: W, pace: Pace, frames: u32, frame: &Image) -> io::Res
     Ok(writer)
 }
 
-/// Writes the bounding rectangle of the changed pixels. If the frame is opaque, unchanged pixels are written as
-/// transparent ones, which compresses best. If it is not opaque, the rectangle is replaced as a whole.
+/// Writes the bounding rectangle of the changed pixels. If the frame is opaque, the unchanged pixels of the rectangle
+/// are written as transparent ones, because this compresses best. Otherwise, all pixels of the rectangle are replaced,
+/// because new pixels may be transparent themselves.
 fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image) -> io::Result<()> {
     let has_changed = |pixel: usize| colour(shown, pixel) != colour(frame, pixel);
     let region = Region::around((frame.width(), frame.height()), has_changed);

@@ -14,7 +14,7 @@ use crate::raster::Image;
 pub(super) struct Gif<W: Write> {
     pace: Pace,
     frames: u64,
-    /// Numbers of pixels of each colour in the announced frames.
+    /// Number of pixels of each colour in all announced frames together.
     samples: Counts,
     state: State<W>,
 }
@@ -29,7 +29,7 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether the current palette differs from the global one. If so, each frame contains the current palette.
+    /// Whether `palette` is no longer the global palette. If so, each further frame contains a palette.
     is_local: bool,
     /// Picture that a viewer shows after the frames written so far.
     shown: Vec<[u8; 3]>,

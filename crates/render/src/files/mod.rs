@@ -39,21 +39,22 @@ enum Format<W: Write> {
 }
 
 impl<W: Write> Animation<W> {
-    /// Starts a GIF. Frames with up to 255 colours are exact. The first frame is exact only if it and the announced
-    /// frames together have up to 255 colours. Other frames use the nearest of up to 255 colours. Translucent pixels
-    /// become opaque.
+    /// Starts a GIF. A frame with at most 255 colours is exact. For the first frame, the colours of the announced
+    /// frames ([`Animation::expect`]) count, too. In all other frames, the colours are replaced by the nearest of 255
+    /// colours. Translucent pixels become opaque.
     pub fn gif(writer: W, pace: Pace) -> Self {
         Animation(Format::Gif(gif::Gif::new(writer, pace)))
     }
 
-    /// Starts an animated PNG of this number of frames, with exact colours.
+    /// Starts an animated PNG of exactly `frames` frames, with exact colours.
     pub fn apng(writer: W, pace: Pace, frames: u32) -> Self {
         Animation(Format::Apng(Box::new(apng::Apng::new(writer, pace, frames))))
     }
 
-    /// Announces the colours of a later frame. The global palette of a GIF is made for the first frame and the
-    /// announced frames. If the global palette does not suit a frame, this frame and all later ones contain palettes of
-    /// their own.
+    /// Announces the colours of a later frame of a GIF. Call it before the first frame is added. The GIF has a global
+    /// palette, which is made for the first frame and the announced frames. If the global palette does not suit a
+    /// frame, this frame and all later ones contain palettes, and the file is larger. For an APNG, this function has no
+    /// effect.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),
@@ -65,8 +66,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] for another size, a side too long for a GIF, or more
-    /// frames than announced for an APNG.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] for a frame of another size, a side of more than 65 535
+    /// pixels in a GIF, or more frames in an APNG than [`Animation::apng`] was given.
     pub fn add(&mut self, frame: &Image) -> io::Result<()> {
         match &mut self.0 {
             Format::Gif(gif) => gif.add(frame),
@@ -78,7 +79,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] without a frame, or with fewer than announced for an APNG.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] if no frame was added, or fewer frames to an APNG than
+    /// [`Animation::apng`] was given.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
             Format::Gif(gif) => gif.finish(),
@@ -91,7 +93,7 @@ fn invalid(why: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
 
-/// Passes on an I/O error of the writer unchanged.
+/// Converts an error of the encoder. Returns an I/O error of the writer unchanged.
 fn failed(error: png::EncodingError) -> io::Error {
     match error {
         png::EncodingError::IoError(error) => error,

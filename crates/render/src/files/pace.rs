@@ -10,7 +10,8 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Duration of a frame in hundredths of a second. `frame` counts from 0. Rounding errors do not accumulate.
+    /// Duration of a frame in hundredths of a second. `frame` is the number of the frame, from 0. The time at which a
+    /// frame ends is rounded, so rounding errors do not accumulate.
     pub(super) fn hundredths(self, frame: u64) -> u16 {
         let end = |frames: u64| {
             let (ticks, rate) = (u128::from(self.ticks.max(1)), u128::from(self.tick_rate.max(1)));

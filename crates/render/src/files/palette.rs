@@ -2,20 +2,21 @@
 //!
 //! A frame with up to 255 colours keeps all of them exactly. A frame with more colours keeps only the most frequent
 //! ones exactly, because they fill large areas, where a changed colour is visible. The other colours are divided into
-//! boxes, and each box gives its mean colour. While there are too few boxes, the box with the largest sum of squared
-//! errors in a channel is split at the mean of that channel.
+//! boxes. For each box, the palette has the mean colour. Until the palette is full, the box with the largest sum of
+//! squared errors in a channel is split at the mean of that channel.
 
 use std::collections::BTreeMap;
 
 type Rgb = [u8; 3];
 
-/// Maximum number of colours in a palette. The remaining index is for pixels that do not change.
+/// Maximum number of colours in a palette. A GIF has one more index, which is used for pixels that do not change.
 const COLOURS_MAX: usize = 255;
 /// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
-/// Largest error per channel at which a frame still uses the existing palette. Stray colours may have larger errors.
+/// A frame of more than 255 colours still uses the existing palette if no error in a channel exceeds this value. Stray
+/// colours may have larger errors.
 const ERROR_MAX: u8 = 24;
-/// A colour is stray if at most one in this number of pixels has it.
+/// A colour is stray if at most one in this number of pixels of the frame has it.
 const PIXELS_OF_A_STRAY: u64 = 20_000;
 /// Maximum number of colours in the cache of nearest colours.
 const REMEMBERED_MAX: usize = 1 << 16;
@@ -78,7 +79,8 @@ impl Palette {
         palette
     }
 
-    /// Whether the palette suits a frame. If the frame has at most 255 colours, all must be in the palette.
+    /// Whether the palette suits a frame. If the frame has at most 255 colours, all must be in the palette. Otherwise,
+    /// [`ERROR_MAX`] limits the errors.
     pub(super) fn suits(&mut self, counts: &Counts) -> bool {
         let is_exact = counts.counts.len() <= COLOURS_MAX;
         let stray = counts.pixels / PIXELS_OF_A_STRAY;
@@ -202,7 +204,7 @@ mod tests {
             let index = palette.index(colour);
             assert_eq!(palette.colour(index), colour);
         }
-        // 4096 colours in 159 boxes: a box has about 3 colours in each direction.
+        // 4096 colours are divided into 159 boxes, so a box has about 3 colours in each of the three channels.
         for colour in edges {
             let index = palette.index(colour);
             let found = palette.colour(index);

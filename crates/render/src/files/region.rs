@@ -9,8 +9,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Bounding rectangle of the pixels for which `has_changed` is true. Its argument is the index of a pixel in row
-    /// order. If there are no such pixels, returns the first pixel, because a frame cannot be empty.
+    /// Bounding rectangle of the pixels for which `has_changed` is true. The argument of `has_changed` is the index of
+    /// a pixel in row order. If no pixel has changed, returns the first pixel, because a frame cannot be empty.
     pub(super) fn around((width, height): (u32, u32), has_changed: impl Fn(usize) -> bool) -> Self {
         let columns = width as usize;
         let row = |y: u32| y as usize * columns..(y as usize + 1) * columns;
@@ -22,7 +22,7 @@ impl Region {
         let (mut left, mut right) = (columns, 0);
         for y in top..=bottom {
             let start = row(y).start;
-            // Only columns outside of the rectangle can widen it.
+            // Only pixels to the left or right of the rectangle found so far can widen it.
             left = (0..left).find(|x| has_changed(start + x)).unwrap_or(left);
             right = (right..columns).rfind(|x| has_changed(start + x)).unwrap_or(right);
         }

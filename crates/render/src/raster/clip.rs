@@ -36,12 +36,12 @@ impl Area {
         points.iter().any(|&point| self.sides().iter().any(|side| !side.has(point)))
     }
 
-    /// Clips a convex polygon (Sutherland and Hodgman). Returns its corners.
+    /// Clips a convex polygon (Sutherland and Hodgman). Returns the corners of the clipped polygon.
     pub(super) fn polygon(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         self.sides().iter().fold(points.to_vec(), |points, side| side.cut(&points))
     }
 
-    /// Clips a line through points. The result may consist of several parts.
+    /// Clips a line through points. The result may consist of several parts. `None` if nothing of the line is left.
     pub(super) fn lines(&self, points: &[[f32; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         let back = closed.then(|| points.first()).flatten();
@@ -87,7 +87,8 @@ impl Side {
         (point[self.axis] - self.bound) * self.sign <= 0.0
     }
 
-    /// The point where a line crosses the bound. Its coordinate on the axis of the bound is exact for any line.
+    /// The point where a line crosses the bound. Its coordinate on `axis` is exactly `bound`, whatever the rounding
+    /// errors are.
     fn crossing(&self, from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
         let (a, b) = (from.map(f64::from), to.map(f64::from));
         let share = (f64::from(self.bound) - a[self.axis]) / (b[self.axis] - a[self.axis]);

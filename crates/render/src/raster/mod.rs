@@ -15,7 +15,8 @@ pub use image::Image;
 /// Maximum side length of an image, in pixels.
 pub const SIDE_MAX: u32 = 16384;
 
-/// Draws a list on a background, antialiased. The side lengths of the image are clamped to 1 to [`SIDE_MAX`].
+/// Draws a list on a background, antialiased. The width and the height of the image are clamped to the range from 1 to
+/// [`SIDE_MAX`] pixels.
 #[must_use]
 pub fn raster(list: &DrawList, (width, height): (u32, u32), background: Colour) -> Image {
     let (width, height) = (width.clamp(1, SIDE_MAX), height.clamp(1, SIDE_MAX));
@@ -156,7 +157,7 @@ mod tests {
         assert!(image.is_opaque() && !clear.is_opaque());
     }
 
-    /// A shape may extend a billion pixels and more.
+    /// Shapes may be wider than a billion pixels. Their far corners must not change the visible pixels.
     #[test]
     fn far_corners_change_nothing_that_is_seen() {
         let wide = |reach: f32| {

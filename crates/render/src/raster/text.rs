@@ -51,7 +51,8 @@ fn draw_glyph(pixels: &mut Pixmap, glyph: &Glyph, [left, top]: [f32; 2], scale: 
     }
 }
 
-/// Coverage at a position in the glyph, interpolated bilinearly.
+/// Coverage at a position in the glyph, interpolated bilinearly. The position is in pixels of the font, from the centre
+/// of the upper left pixel.
 fn mixed(glyph: &Glyph, x: f32, y: f32) -> f32 {
     let at = |column: f32, row: f32| {
         let inside = (0.0..GLYPH_WIDTH as f32).contains(&column) && (0.0..GLYPH_HEIGHT as f32).contains(&row);

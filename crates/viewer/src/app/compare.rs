@@ -12,7 +12,8 @@ pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
     /// Further copies of both sources, which search for the first difference. `None` when the search has ended.
     scouts: Option<[Box<dyn Source>; 2]>,
-    /// Whether only the worlds are compared. A snapshot does not contain the state of the game's own rules.
+    /// Whether only the worlds are compared, because one source is a snapshot, which does not contain the state of the
+    /// game's own rules.
     only_worlds: bool,
     pub(super) first: Option<First>,
     searched: u64,

@@ -22,7 +22,7 @@ pub(super) struct Pointer {
 }
 
 impl Pointer {
-    /// Cancels the action of the pointer, which then has no effect.
+    /// Cancels the action of the pointer: the release of its button then has no effect.
     pub(super) fn cease(&mut self) {
         (self.doing, self.button) = (Doing::Nothing, None);
     }

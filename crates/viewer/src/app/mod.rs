@@ -1,4 +1,4 @@
-//! [`App`]: the viewer's state, between input events and the draw list.
+//! [`App`]: the state of the viewer. Input events and elapsed time change it, and it fills a draw list.
 
 mod compare;
 mod hand;
@@ -229,7 +229,7 @@ impl App {
         self.content.first_scene().map(str::to_owned)
     }
 
-    /// Plays the source by elapsed real time, and continues background work.
+    /// Plays the source for `time`, the real time since the last call, and continues background work.
     pub fn advance(&mut self, time: Duration) {
         let Some(source) = &mut self.source else { return };
         source.think();
@@ -314,7 +314,7 @@ impl App {
         }
     }
 
-    /// Closes the source, for example a network match, before the program ends.
+    /// Closes the source, for example leaves a network match. Must be called before the program ends.
     pub fn close(&mut self) {
         if let Some(source) = &mut self.source {
             source.close();

@@ -86,7 +86,7 @@ impl Player {
         } else if self.playing {
             self.due += time.as_secs_f64() * f64::from(source.tick_rate()) * f64::from(self.speed).exp2();
             let due = (self.due as u64).min(slice);
-            // Ticks beyond this number are dropped. Playback then slows down instead of catching up later.
+            // Due ticks beyond `slice` are dropped, so playback slows down instead of catching up later.
             self.due = self.due.fract();
             let end = source.ticks().unwrap_or(u64::MAX);
             source.seek(source.tick().saturating_add(due).min(end))?;

@@ -15,7 +15,8 @@ const TOP: f32 = 8.0;
 /// Longest row of text, in characters.
 const COLUMNS_MAX: usize = 120;
 
-/// Top of the layer list, in pixels. The list is lower if the text above it ends lower.
+/// Highest place for the top of the layer list, as its y coordinate in pixels. Longer text above the list moves it
+/// down.
 const LAYERS_TOP: f32 = 136.0;
 
 pub(super) fn draw(app: &mut App) {
@@ -104,8 +105,8 @@ fn wrapped(line: &str, columns: usize) -> Vec<String> {
     characters.chunks(columns.max(1)).map(|row| row.iter().collect()).collect()
 }
 
-/// Draws the second world over the first. Circles the bodies that differ. The circle of the first such body has a
-/// thicker line.
+/// Draws the second world over the first, with a circle around each body that differs. The circle has a thicker line if
+/// the body is that of the first difference between the replays.
 fn draw_other(
     list: &mut DrawList,
     shown: &World,

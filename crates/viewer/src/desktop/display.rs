@@ -20,7 +20,8 @@ pub(super) fn check() -> Result<(), String> {
     }
 }
 
-/// Whether an X server listens at `display`. Displays on other hosts are not contacted, and count as listening.
+/// Whether an X server listens at `display`. Displays on other hosts are not contacted, and count as listening. A
+/// `display` that has no colon or begins with a slash counts as not listening.
 fn answers(display: &str) -> bool {
     let Some(number) = display.strip_prefix(':').or_else(|| display.strip_prefix("unix:")) else {
         return !display.starts_with('/') && display.contains(':');

@@ -35,7 +35,7 @@ impl Form {
     }
 }
 
-/// Point that the user points at, in world coordinates.
+/// Point at which an action of the user is aimed, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aim {
     /// The point, in metres.
@@ -90,8 +90,9 @@ pub enum Act {
     DragTo(Vec2<Fx>),
     /// Releases the held body, which keeps its velocity.
     Release,
-    /// Adds a dynamic body. The vector from `at` to `to` gives the radius of a circle or polygon, the half extents of a
-    /// box, or the segment of a capsule, up to 50 m. If the vector is shorter than 0.05 m, the size is 0.5 m.
+    /// Adds a dynamic body. The vector from `at` to `to` gives the size: the radius of a circle or polygon, the half
+    /// extents of a box, or the segment of a capsule. The size is at most 50 m. If the vector is shorter than 0.05 m,
+    /// the size is 0.5 m.
     Spawn {
         /// Form of the body.
         form: Form,
@@ -109,7 +110,7 @@ pub enum Act {
 }
 
 impl Act {
-    /// Explosion with a range of 8 m, and full strength within 4 m.
+    /// Explosion at `at` with a range of 8 m, and full strength within 4 m.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })
@@ -135,7 +136,7 @@ pub trait Playground {
     /// seek itself drops queued acts and releases the held body.
     fn act(&mut self, act: Act);
 
-    /// Returns the held body. After a grab it returns `None` until two ticks have been played.
+    /// Returns the held body. After [`Act::Grab`], the result is `None` until two ticks have been played.
     fn held(&self) -> Option<Held>;
 
     /// Number of queued acts.

@@ -4,8 +4,8 @@
 //! without shapes that follows the pointer. A command returns no handle. So the anchor is found by its user data one
 //! tick later, and the joint is added then.
 //!
-//! A seek to an earlier tick forgets the held body. Anchors may then be left in the world. The next live tick, which is
-//! not one of the recorded ticks, removes them.
+//! A seek to an earlier tick forgets the held body. Anchors may then be left in the world. The next live tick (a tick
+//! that is not replayed from the recording) removes them.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;

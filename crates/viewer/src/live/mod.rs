@@ -20,9 +20,8 @@ use hand::Hand;
 /// A sandbox in which the user acts, and its recording.
 ///
 /// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
-/// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. The work of the
-/// replay may exceed the limit of a verifier. The status then shows a lower bound for the verifier's argument
-/// `--max-work`.
+/// recorded ticks again, until an [`Act`] issues commands. The later recorded ticks are then dropped. If the work of
+/// the replay exceeds the limit of a verifier, the status shows a lower bound for the verifier's argument `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;
@@ -45,12 +44,12 @@ pub struct Live {
     recording: Recording<Sandbox>,
     hand: Hand,
     acts: Vec<Act>,
-    /// Message about the last act.
+    /// Message for the status if commands were dropped in the last played tick.
     note: Option<&'static str>,
 }
 
 impl Live {
-    /// Starts a scene. Its scripted commands run in every tick.
+    /// Starts a scene. In every live tick, the commands of its script run before those of the user.
     ///
     /// # Errors
     /// [`RecordError`] if a replay cannot hold the scene.

@@ -2,8 +2,8 @@
 
 use lockstep2d_render::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 
-/// Size of the place of a glyph in the atlas. On its right and below, a glyph has an empty pixel, so that magnified
-/// glyphs do not show pixels of their neighbours.
+/// Size of the place of a glyph in the atlas, in pixels. To the right of a glyph and below it there is an empty pixel,
+/// so that magnified glyphs do not show pixels of their neighbours.
 const SLOT: [usize; 2] = [GLYPH_WIDTH + 1, GLYPH_HEIGHT + 1];
 const COLUMNS: usize = 16;
 /// Number of Latin-1 characters. They have the first slots.

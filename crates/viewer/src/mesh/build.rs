@@ -35,7 +35,7 @@ impl Mesh {
         let bordered = !item.stroke.is_none() && item.width > 0.0;
         if item.closed && !item.fill.is_none() && points.len() > 2 {
             if bordered && item.width >= screen.pixel {
-                // The border covers the edge of the area. The border itself is antialiased on both sides.
+                // The border covers the edge of the area, so only the border is antialiased, on both of its sides.
                 self.area(points, item.fill);
             } else {
                 match regular(points) {
@@ -62,8 +62,8 @@ impl Mesh {
         chunk.indices.extend(fan.flatten().map(|index| first + index));
     }
 
-    /// Adds a regular polygon as a fan around its centre. The reach in the samples grows linearly from the edge to the
-    /// centre.
+    /// Adds a regular polygon as a fan around its centre. The reach in the samples is 0 half a pixel outside of the
+    /// edge, and grows linearly to the centre, so that the edge fades over one pixel.
     fn disc(&mut self, points: &[Point], disc: Disc, fill: Colour, pixel: f32) {
         let [x, y] = disc.middle;
         let scale = 1.0 + pixel / 2.0 / disc.inner;
@@ -251,7 +251,8 @@ fn fan(corners: usize) -> Option<impl Iterator<Item = [u16; 3]>> {
     Some((1..last).map(|corner| [0, corner, corner + 1]))
 }
 
-/// Appends the triangles of a strip. Its corners alternate between the two sides of the strip.
+/// Appends the triangles of a strip of `pairs` pairs of vertices. The vertices alternate between the two sides of the
+/// strip.
 fn ribbon(indices: &mut Vec<u16>, first: u16, pairs: usize, closed: bool) {
     // The cast is exact, because the corners fit in a chunk.
     let pairs = pairs as u16;

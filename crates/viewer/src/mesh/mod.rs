@@ -14,10 +14,10 @@
 //! use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
 //! use lockstep2d_viewer::{Colour, DrawList};
 //!
-//! // The texture, once.
+//! // The texture is uploaded once.
 //! let atlas = Atlas::default();
 //! assert_eq!(atlas.pixels.len(), Atlas::WIDTH * Atlas::HEIGHT * 4);
-//! // A frame: a vertex and an index buffer for each chunk.
+//! // For each frame, every chunk gives a vertex buffer and an index buffer.
 //! let mut list = DrawList::default();
 //! list.rectangle([10.0, 10.0], [80.0, 8.0], Colour::hex(0x2ca02c));
 //! list.text([10.0, 20.0], 1.0, Colour::hex(0x222222), "80");

@@ -32,7 +32,7 @@ impl Strip {
         let Some(&first) = self.points.first() else { return false };
         if closed {
             self.add(first);
-            // The first point was added again for its normal. It is already in the list.
+            // The first point was added again only to get the normal of the last segment, so it is removed again.
             if self.points.len() > 1 {
                 self.points.pop();
             }

@@ -44,7 +44,8 @@ fn sample(corners: [&Vertex; 3], point: [f32; 2]) -> Option<[f32; 3]> {
     let cross =
         |a: [f32; 2], b: [f32; 2], c: [f32; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let area = cross(a, b, c);
-    // The point is slightly off the pixel centre. A point on a shared edge would count for two triangles.
+    // The point is slightly off the pixel centre, because a point exactly on a shared edge would count for two
+    // triangles.
     let point = [point[0] + 1.3e-3, point[1] + 2.7e-3];
     let weights = [cross(point, b, c), cross(a, point, c), cross(a, b, point)].map(|part| part / area);
     let inside = area != 0.0 && weights.iter().all(|&weight| weight >= 0.0);
@@ -151,7 +152,8 @@ fn discs_are_round_whatever_their_size() {
         let middle = [31.3, 30.8];
         let mut list = DrawList::default();
         list.polygon(disc(middle, radius, corners), WHITE, Colour::NONE, 0.0);
-        // The tolerance is larger, because the edges of the polygon are closer to the centre than its corners.
+        // The tolerance includes the largest distance between the edges of the polygon and the circle through its
+        // corners.
         let tolerance = 0.02 + radius * (1.0 - (std::f32::consts::PI / corners as f32).cos());
         assert_covers(&list, tolerance, |point| {
             let depth = radius - distance(point, middle, [middle[0] + 1e-3, middle[1]]).0;

@@ -14,8 +14,9 @@ use crate::source::{Source, SourceError};
 
 /// A game played at one keyboard, by people and bots.
 ///
-/// Every tick is recorded and can be sought. Recorded ticks are played again until a person presses a player's key. The
-/// game then continues from there and drops the later recorded ticks.
+/// Every tick is recorded, and the user can go to any recorded tick. From there, the recorded ticks are played again
+/// until a person presses a player's key. The game then continues with new inputs, and the later recorded ticks are
+/// dropped.
 pub struct LocalMatch<G: Game> {
     name: String,
     recording: Recording<G>,
@@ -25,14 +26,16 @@ pub struct LocalMatch<G: Game> {
     nothing: World,
 }
 
-/// Number of bytes that a save does not share with other saves. A kilobyte is added for the game's own rules.
+/// Number of bytes that a save does not share with other saves. It includes a kilobyte for the state of the game's own
+/// rules.
 fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
     1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
 }
 
 impl<G: Game + 'static> LocalMatch<G> {
-    /// Starts a game. The players take its seats in order. If there are fewer players than seats, the other seats are
-    /// absent. If there are more, the other players are left out. Bots are created from `seed`.
+    /// Starts a game. The players take its seats in order. If there are fewer players than seats, the remaining seats
+    /// have no player ([`Player::Absent`]). If there are more, the surplus players are ignored. Bots are created from
+    /// `seed`.
     ///
     /// # Errors
     /// [`RecordError`] if the game refuses the setup or a replay cannot hold it.
@@ -107,8 +110,8 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         self.recording.game().tick_rate()
     }
 
-    /// Seeking forwards plays, also beyond the recorded ticks. Seeking backwards keeps the recording, and forgets the
-    /// keys that were tapped.
+    /// Seeking forwards plays the ticks up to `tick`, also beyond the last recorded tick. Seeking backwards keeps the
+    /// recording, and forgets the keys that went down since the last tick and are up again.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
             self.players.iter_mut().for_each(Seated::forget_taps);

@@ -14,17 +14,17 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Largest number of ticks in a frame of a peer that catches up, so that the window stays responsive.
+/// Maximum number of ticks that are played in a frame when this peer catches up, so that the window stays responsive.
 const TICKS_PER_FRAME: u32 = 64;
-/// Longest time that closing waits until the match is left.
+/// Longest time for which [`Source::close`] waits until this peer has left the match.
 const LEAVE_TIME: Duration = Duration::from_secs(1);
-/// Interval of updates while closing waits.
+/// Interval of updates while [`Source::close`] waits.
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
 /// Participant of a network match: host, player or spectator.
 ///
-/// The match follows a clock that all peers share, so it can neither be paused nor sought. The last ticks that are
-/// shown may have predicted inputs. The replay contains only final ticks.
+/// The match follows a clock that all peers share, so the user can neither pause it nor go to another tick. The latest
+/// ticks on the screen may have predicted inputs. The replay contains only final ticks.
 ///
 /// ```
 /// use std::time::Duration;
@@ -32,7 +32,7 @@ const LEAVE_STEP: Duration = Duration::from_millis(5);
 /// use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions};
 /// use lockstep2d_viewer::{App, Controls, Online};
 ///
-/// // A network in memory; `Viewer::online` takes UDP.
+/// // A network in memory; `Viewer::online` uses UDP.
 /// let (network, setup) = (Network::new(LinkConditions::default(), 1), SandboxSetup::default());
 /// // The sandbox has one seat.
 /// let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
@@ -53,7 +53,7 @@ pub struct Online<G: Game, T: Transport> {
     controls: Controls<G::Input>,
     presentation: Presentation<G>,
     desync: Option<PeerDesync>,
-    /// Text of the peer's last event.
+    /// Message about the latest event that has one, for the status line.
     told: Option<&'static str>,
     /// Whether play waits for another peer.
     waiting: bool,
@@ -91,7 +91,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         &self.peer
     }
 
-    /// The first desync.
+    /// The first desync, if one was found.
     #[must_use]
     pub const fn desync(&self) -> Option<&PeerDesync> {
         self.desync.as_ref()
@@ -106,7 +106,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
             let seats = self.peer.seats().len();
             let inputs: Vec<_> = (0..seats).map(|_| self.controls.input()).collect();
             if self.peer.advance(&inputs)? {
-                // Forgets key presses, so that a short tap counts for one tick.
+                // Forgets the keys that went down since the last tick, so that a short tap counts for one tick.
                 let _played = self.controls.take();
             }
         }
@@ -223,8 +223,8 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
             if matches!(self.peer.status(), None | Some(Status::Closed)) {
                 break;
             }
-            // A peer that leaves needs further updates to tell the other peers, also after an error.
-            // Errors were shown before.
+            // A peer that leaves needs updates until the other peers know about it. After an error, `advance` no longer
+            // updates the peer, so it is updated directly. Errors have been shown before.
             let _ = self.advance(LEAVE_STEP);
             if self.ended.is_some() {
                 let _ = self.peer.update(self.now);

@@ -8,8 +8,8 @@ use lockstep2d::lockstep::Game;
 use super::controls::Controls;
 use crate::event::{Event, Key};
 
-/// A computer player. The function returns the input for the next tick. It is not called for ticks that are played from
-/// the recording.
+/// A computer player: a function that returns the input for the next tick. It is called only for new ticks, and not
+/// when a recorded tick is played again.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 
 /// Creates a bot. The arguments are the scene's random seed and the seat number.

@@ -30,7 +30,7 @@ impl<G: Game> Clone for Presentation<G> {
 }
 
 impl<G: Game + 'static> Default for Presentation<G> {
-    /// No drawing, no status line, and all fields of a save except those of the world.
+    /// Draws nothing and shows no status. The state consists of all fields of a save, except those of the world.
     fn default() -> Self {
         Presentation {
             draw: Rc::new(|_, _| {}),
@@ -54,7 +54,8 @@ fn own_state<G: Game>(game: &G) -> Fields {
     let all = fields(&game.save()).unwrap_or_default();
     let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();
     let Some(first) = world.first().map(Field::path) else { return listed(&all) };
-    // In the save of the game, the path of the world's first field begins with the path of the world.
+    // The path of this field in the save of the game is the path of the world, followed by the path of the field in the
+    // world.
     let inside = all.iter().find_map(|field| field.path().strip_suffix(first)).map(str::to_owned);
     let of_world: BTreeSet<&str> = world.iter().map(Field::path).collect();
     let is_own = |field: &&Field| match inside.as_deref() {

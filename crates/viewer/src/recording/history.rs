@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 /// Maximum number of saves. The number is limited, because adding a save may scan all of them.
 const FRAMES_MAX: usize = 2048;
-/// Number of ticks added to the distance of a save from the current tick (ten seconds at 60 Hz). Because of it, saves
-/// are about equally dense within this distance.
+/// Number of ticks that [`History::least_useful`] adds to the distance of a save from the current tick: ten seconds at
+/// 60 Hz. Because of this addition, saves within this distance are about equally dense.
 const NEAR: u64 = 600;
 
 /// Saves of a game at some ticks, within a memory budget.
@@ -67,8 +67,9 @@ impl<S> History<S> {
         }
     }
 
-    /// Returns the save to drop, which is never the first or the last. For each save, the gap that its removal would
-    /// leave is divided by its distance from `here` plus [`NEAR`]. The save with the smallest result is returned.
+    /// Returns the tick of the save to drop, which is never the first or the last save. For each save, the gap that its
+    /// removal would leave is divided by the sum of its distance from `here` and [`NEAR`]. The save with the smallest
+    /// quotient is dropped.
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));

@@ -17,8 +17,8 @@ const SAVES_BYTES: usize = 256 << 20;
 
 /// A game, and the recording of all its inputs. *Tick t* is the state after *t* ticks.
 ///
-/// [`Recording::replay_tick`] plays on with the recorded inputs. [`Recording::play`] plays on with new inputs, and
-/// drops the recorded inputs that follow.
+/// [`Recording::replay_tick`] plays the next tick with the recorded inputs. [`Recording::play`] plays it with new
+/// inputs, and drops all recorded ticks after the current one.
 pub(crate) struct Recording<G: Game> {
     game: G,
     tick: u64,
@@ -32,11 +32,11 @@ pub(crate) struct Recording<G: Game> {
     /// Sum of the work units of the recorded ticks up to each tick.
     work: Vec<u64>,
     history: History<G::Save>,
-    /// Returns the bytes that a save does not share with other saves. The game must be in the saved state.
+    /// Returns the number of bytes that a save does not share with other saves. The game must be in the saved state.
     weigh: fn(&G, &G::Save) -> usize,
     /// State after the last recorded tick. `None` if the game is at this tick.
     end: Option<G::Save>,
-    /// Limits of a verifier of the replay.
+    /// The limits with which the replay will be verified.
     limits: Limits,
 }
 
@@ -57,7 +57,7 @@ pub(crate) enum RecordingError {
 }
 
 impl<G: Game> Recording<G> {
-    /// Starts a game. `weigh` returns the bytes that a save does not share with other saves.
+    /// Starts a game. `weigh` returns the number of bytes that a save does not share with other saves.
     pub(crate) fn start(setup: &G::Setup, weigh: fn(&G, &G::Save) -> usize) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
         Ok(Recording {
@@ -75,7 +75,7 @@ impl<G: Game> Recording<G> {
         })
     }
 
-    /// Sets the limits of a verifier of the replay.
+    /// Sets the limits with which the replay will be verified.
     pub(crate) fn limited(self, limits: Limits) -> Self {
         Recording { limits, ..self }
     }
@@ -97,8 +97,9 @@ impl<G: Game> Recording<G> {
         self.tick == self.ticks()
     }
 
-    /// End of a status line: the limit that a verifier needs, if it exceeds the limit of this recording. The work is a
-    /// lower bound. A verifier also counts the work of the setup, and work that becomes known only while a tick runs.
+    /// Text for the end of the status line. If the recorded work exceeds `total_work` of the limits, the text tells the
+    /// user to verify with a `--max-work` above this work. The limit may have to be even larger, because a verifier
+    /// also counts the work of the setup, and work that becomes known only while a tick runs.
     pub(crate) fn limit_hint(&self) -> String {
         match self.work.last() {
             Some(&work) if work > self.limits.total_work => {

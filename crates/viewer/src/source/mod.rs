@@ -56,12 +56,12 @@ pub trait Source {
     /// The current tick.
     fn tick(&self) -> u64;
 
-    /// The first tick that can be sought.
+    /// The first tick of the source.
     fn first(&self) -> u64 {
         0
     }
 
-    /// The last tick that can be sought; `None` if the source has no end.
+    /// The last tick of the source; `None` if the source has no end.
     fn ticks(&self) -> Option<u64>;
 
     /// Last tick on the timeline. For a source without an end, this is the last tick played so far.
@@ -78,7 +78,7 @@ pub trait Source {
     /// [`SourceError`] if the tick cannot be reached.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError>;
 
-    /// Status, such as the verdict of a replay or the scores of a match; may be empty.
+    /// Status line, such as the verdict of a replay or the scores of a match; may be empty.
     fn status(&self) -> String {
         String::new()
     }
@@ -118,11 +118,11 @@ pub trait Source {
         None
     }
 
-    /// Closes the source before it is replaced or the program ends. A network match, for example, is left. Closing
+    /// Closes the source before it is replaced or the program ends. For example, a network match is left here. Closing
     /// should take at most a second.
     fn close(&mut self) {}
 
-    /// Names and values of the state of the game's own rules, besides the world.
+    /// Names and values of the fields of the game's own state, without those of the world.
     fn state(&self) -> Vec<(String, String)> {
         Vec::new()
     }

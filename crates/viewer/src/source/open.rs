@@ -30,7 +30,7 @@ pub enum OpenError {
     File(EvidenceError),
     /// The divergence report contains no replay.
     EmptyReport,
-    /// The file cannot be compared with the file that is shown, because no tick is in both.
+    /// The file cannot be compared with the file that is already shown, because the files have no tick in common.
     NoCommonTick {
         /// Name of the file that is shown.
         first: String,

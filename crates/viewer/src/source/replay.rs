@@ -9,7 +9,8 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Initial interval between keyframes, in ticks. With a shorter interval, seeking is faster and takes more memory.
+/// Initial interval between keyframes, in ticks. With a shorter interval, seeking is faster, and the keyframes take
+/// more memory.
 const INTERVAL: u32 = 60;
 
 /// Number of work units after which a call of [`Source::think`] stops verifying.
@@ -50,7 +51,7 @@ impl<G: Game + 'static> Replay<G> {
     /// Opens a replay.
     ///
     /// # Errors
-    /// The [`Verdict`] if no tick of it can be played.
+    /// The [`Verdict`] if no tick of the replay can be played.
     pub fn open(name: &str, bytes: &'static [u8], limits: &Limits) -> Result<Self, Verdict> {
         let options = TimelineOptions { interval: INTERVAL, ..TimelineOptions::default() };
         let timeline = Timeline::open(bytes, &options, limits)?;
@@ -79,7 +80,8 @@ impl<G: Game + 'static> Replay<G> {
         if tick == self.timeline.tick() {
             return Ok(());
         }
-        // Seeks to the tick before and plays the last tick, so that derived data such as contact points is available.
+        // Seeks to the tick before and simulates the requested tick, so that derived data such as contact points is
+        // available.
         let Some(before) = tick.checked_sub(1) else {
             return self.timeline.seek(tick).map_err(SourceError::of);
         };

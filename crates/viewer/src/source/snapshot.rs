@@ -1,4 +1,4 @@
-//! [`Snapshot`]: a snapshot file as a source, from which the world can run on.
+//! [`Snapshot`]: a snapshot file as a source. The world is simulated from the tick of the snapshot on.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ const INTERVAL: u64 = 30;
 /// Maximum number of saves. When there are more, every second save is dropped and the interval doubles.
 const SAVES_MAX: usize = 256;
 
-/// World of a snapshot, which runs on without input. *Tick t* is tick *t* of the world.
+/// World of a snapshot, simulated from there on without input. *Tick t* is tick *t* of the world.
 ///
 /// ```
 /// use lockstep2d::world::World;
@@ -94,7 +94,7 @@ impl Source for Snapshot {
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let tick = tick.max(self.first);
         if tick < self.world.tick() {
-            // Plays to `tick` from an earlier save, so that derived data such as contact points is available.
+            // Plays from an earlier save up to `tick`, so that derived data such as contact points is available.
             let before = tick.saturating_sub(1).max(self.first);
             if let Some((_, save)) = self.saves.range(..=before).next_back() {
                 self.world.restore(save);

@@ -18,7 +18,8 @@ impl Host {
         Host { output }
     }
 
-    /// Carries out requests. A failed write is shown as a message, so that a full disk does not end the session.
+    /// Writes the files that the viewer wants to save. A failed write is shown as a message, so that a full disk does
+    /// not end the session.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         if let Err(error) = self.save(app) {
             app.tell(format!("not saved: {error}"));
@@ -26,7 +27,8 @@ impl Host {
         Ok(())
     }
 
-    /// Saves the recording if the command line names an output file.
+    /// Called when the program ends. If the command line names an output file, saves the recording there. Otherwise
+    /// writes the files that the viewer still wants to save.
     pub(super) fn finish(&self, app: &mut App) -> Result<(), WindowError> {
         let Some(path) = &self.output else { return self.save(app) };
         app.save();
@@ -53,7 +55,8 @@ impl Host {
             };
             let path = path.map_err(failed)?;
             eprintln!("{} written", path.display());
-            // The message names the file that was asked for.
+            // The viewer's message begins with the name that it requested. The message should name the file that was
+            // written.
             if let Some(rest) = app.message().and_then(|message| message.strip_prefix(&name)) {
                 app.tell(format!("{}{rest}", path.display()));
             }
@@ -65,9 +68,10 @@ impl Host {
         app.handle(Event::Dropped { name, bytes });
     }
 
-    /// Sleeps if the display does not limit the frame rate, as with a virtual display. `elapsed` is in seconds.
+    /// Sleeps if the display does not limit the frame rate, which is the case for a virtual display. `elapsed` is the
+    /// time since the last frame in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// A frame shorter than this, in seconds, shows that the display does not limit the frame rate.
+        /// If a frame takes less than this time, in seconds, the display does not limit the frame rate.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));
@@ -84,7 +88,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(&beside, path).inspect_err(|_| remove(&beside))
 }
 
-/// Writes a new file. If `name` exists, a number is added to the name.
+/// Writes a new file and returns its path. If `name` exists, a number is added to the name.
 fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     let beside = write_beside(Path::new(name), bytes)?;
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
@@ -100,8 +104,8 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     outcome
 }
 
-/// Gives a file a second name if the name is free, which a rename does not check. Writes another file if the file system
-/// has no hard links.
+/// Creates a hard link `name` to `file`. Unlike a rename, this fails if `name` exists. If the file system has no hard
+/// links, writes `bytes` to a new file instead.
 fn link_or_write(file: &Path, name: &Path, bytes: &[u8]) -> io::Result<()> {
     match fs::hard_link(file, name) {
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
@@ -111,7 +115,7 @@ fn link_or_write(file: &Path, name: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Writes a temporary file beside a path.
+/// Writes a temporary file in the folder of `path`, and returns its path.
 fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let mut beside = path.to_path_buf().into_os_string();
     beside.push(format!(".{}.unfinished", std::process::id()));
@@ -120,7 +124,7 @@ fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     Ok(beside)
 }
 
-/// Writes all bytes to a new file at a path. After an error, no part of the file is left.
+/// Writes all bytes to `file`, a new file at `path`. After an error, the file is removed.
 fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
     let written = file.write_all(bytes).and_then(|()| file.sync_all());
     // Windows cannot remove an open file.
@@ -128,7 +132,7 @@ fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
     written.inspect_err(|_| remove(path))
 }
 
-/// Removes a file that is no longer needed. A file that stays does no harm.
+/// Removes a file that is no longer needed. Errors are ignored, because a remaining file does no harm.
 fn remove(path: &Path) {
     let _removed = fs::remove_file(path);
 }

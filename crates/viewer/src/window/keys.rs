@@ -9,7 +9,7 @@ pub(super) struct Keyboard {
 }
 
 impl Keyboard {
-    /// Handles a key that goes down or repeats. Returns the key if the viewer should get the event.
+    /// Handles a key that goes down or repeats. Returns the key if the viewer should handle it.
     pub(super) fn down(&mut self, code: KeyCode, repeat: bool) -> Option<Key> {
         let key = key(code)?;
         if !self.down.contains(&code) {
@@ -32,8 +32,8 @@ impl Keyboard {
     }
 }
 
-/// Whether a key repeats while it is held. Keys that change the tick, speed or zoom by a step repeat. Keys that toggle
-/// a setting do not.
+/// Whether the viewer handles the repetitions of a held key. It does for keys that change the tick, speed or zoom by a
+/// step, and not for keys that toggle a setting.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))
@@ -92,7 +92,8 @@ pub(super) fn button(button: MouseButton) -> Option<Button> {
     }
 }
 
-/// Wheel movement that miniquad reports for one notch: one line, or the scroll distance of the platform.
+/// Wheel movement that miniquad reports for one notch: pixels in a browser, Windows' own units, or lines on other
+/// systems.
 const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     100.0
 } else if cfg!(target_os = "windows") {
@@ -101,7 +102,7 @@ const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     1.0
 };
 
-/// Converts a wheel movement to notches, clamped to ten in both directions.
+/// Converts a wheel movement to notches, from -10 to 10. A value that is not finite becomes 0.
 pub(super) fn notches(turned: f32) -> f32 {
     let notches = turned / NOTCH;
     if notches.is_finite() { notches.clamp(-10.0, 10.0) } else { 0.0 }

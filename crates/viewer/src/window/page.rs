@@ -14,7 +14,7 @@ use crate::{App, Event, Report, Request};
 
 use super::WindowError;
 
-/// Extension of a file name by which the page requests a scene. The file is empty.
+/// The page requests a scene by dropping an empty file, whose name is the scene's name with this extension.
 const SCENE: &str = ".scene";
 
 pub(super) struct Host {
@@ -64,7 +64,8 @@ impl Host {
     pub(super) fn pace(&self, _elapsed: f64) {}
 }
 
-/// Writes a line to the log. The format string is needed, because the macro does not format a sole argument.
+/// Writes a line to the log. The text is passed as an argument of `"{}"`, because `info!` does not format a sole
+/// argument.
 fn post_line(line: &str) {
     miniquad::info!("{}", line);
 }

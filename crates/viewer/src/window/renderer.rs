@@ -39,12 +39,12 @@ pub(super) struct Renderer {
     context: Box<dyn RenderingBackend>,
     pipeline: Pipeline,
     atlas: TextureId,
-    /// A pair of buffers for each chunk. With a single pair, drawing would wait until the GPU has read the previous
-    /// chunk.
+    /// A vertex and an index buffer for each chunk. With only one pair of buffers, each upload would wait until the GPU
+    /// has read the previous chunk.
     buffers: Vec<[BufferId; 2]>,
 }
 
-/// A picture: red, green, blue and opacity of each pixel, rows from top to bottom.
+/// An image: red, green, blue and opacity of each pixel, with the rows from top to bottom.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) struct Picture {
     pub(super) width: u32,

@@ -14,7 +14,7 @@ use super::performance::Performance;
 use super::renderer::Renderer;
 use super::{Outcome, WindowError};
 
-/// Longest time step of a frame, in seconds. After a longer pause, the world does not catch up.
+/// Longest time step of a frame, in seconds. Time beyond it is skipped, so the world does not catch up after a pause.
 const PAUSE_MAX: f64 = 0.25;
 
 pub(super) struct Stage {

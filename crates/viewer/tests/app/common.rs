@@ -11,7 +11,7 @@ use lockstep2d_viewer::{App, Button, Event, Key, LAYER_KEYS};
 
 pub(crate) const SIZE: [f32; 2] = [1000.0, 700.0];
 
-/// Records a replay of a scene, with extra commands at some ticks.
+/// Records a replay of a scene. `more` returns additional commands for each tick.
 pub(crate) fn replay(scene: &str, ticks: u64, more: impl Fn(u64, &Sandbox) -> Vec<Command>) -> Vec<u8> {
     let scene = Scene::find(scene).unwrap();
     let mut recording = Recording::<Sandbox>::start(&scene.setup(0), 60).unwrap();

@@ -68,7 +68,7 @@ fn a_session_of_random_pointer_actions_verifies_whatever_they_are() {
         for button in [Button::Left, Button::Right, Button::Middle] {
             app.handle(Event::Up(button));
         }
-        // Seeking to the end carries out the queued acts.
+        // Seeking to the end executes the user's actions that are still queued.
         press(&mut app, Key::End);
         frames(&mut app, 200);
         let file = saved(&mut app);

@@ -58,7 +58,7 @@ fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
         app.draw().texts().iter().filter(|text| text.text.ends_with("v0")).cloned().collect();
     assert!(labels.len() > 5, "{labels:?}");
     let label = &labels[4];
-    // A label is to the right of the body's centre of mass, and above it.
+    // A label is 3 pixels to the right of the body's centre of mass, and 14 pixels above it.
     click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
     let lines = texts(&mut app);
     assert!(lines.contains(&format!("body {}", label.text)), "{lines:?}");

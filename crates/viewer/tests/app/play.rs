@@ -15,10 +15,10 @@ use serde::{Deserialize, Serialize};
 
 use super::common::frames;
 
-/// A tick in which the claims of the game cannot be recorded.
+/// At this tick, the game returns two claims with the same name, so no replay that ends here can be saved.
 const BAD_TICK: u64 = 100;
 
-/// Counts pressed keys. Each tick costs `work`.
+/// A game that adds up the lengths of its inputs. Each tick costs `work` units.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Count {
     players: u32,
@@ -127,7 +127,7 @@ fn a_step_back_forgets_a_tap_of_a_key() {
     play.seek(9).unwrap();
     play.seek(12).unwrap();
     assert_eq!((play.tick(), play.recorded(), play.game().pressed), (12, 30, 0));
-    // A tap before a step forwards, and a key that is held.
+    // A tap before a step forwards counts, and so does a key that is held during a step back.
     tap(&mut play);
     play.seek(13).unwrap();
     assert_eq!((play.recorded(), play.game().pressed), (13, 1));
@@ -173,7 +173,7 @@ fn a_saved_match_has_all_final_ticks_whatever_they_cost() {
     for milliseconds in [1450, 730] {
         advance(&mut peers, milliseconds);
         peers.iter_mut().for_each(|peer| assert!(peer.handle(&Event::Pressed(X))));
-        // The host plays ticks without the inputs of the guest.
+        // The host plays further ticks with predicted inputs of the guest.
         advance(&mut peers[..1], 70);
         for peer in &mut peers {
             let (shown, ticks) = (peer.hash(), peer.peer().confirmed());
@@ -223,7 +223,8 @@ fn a_peer_catches_up_in_many_frames() {
     assert!(waited < 300 && (30..=64).contains(&most), "up to {most} ticks in each of {waited} frames");
 }
 
-/// Plays as the host until the guest has left, for at most the time in which a silent guest keeps its seat.
+/// Plays as the host until the guest has left, but at most 1.5 s: a silent guest would lose its seat after 2 s. Returns
+/// whether the guest has left.
 fn play_until_left(host: &mut CountPeer, from: Duration) -> bool {
     (1..=300).any(|step| {
         host.update(from + step * Duration::from_millis(5)).unwrap();

@@ -7,7 +7,7 @@ use lockstep2d_viewer::LAYER_KEYS;
 use super::picture::Picture;
 use super::run::{app, directory, golden, play, play_without_window};
 
-/// Replay that shows something in every layer after [`SECONDS`] seconds.
+/// Replay in which every layer shows something after [`SECONDS`] seconds.
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
@@ -46,8 +46,8 @@ fn each_overlay_is_what_the_draw_list_says() {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // A pixel that changes by more than 24 in one rasteriser may change less in the other rasteriser, where a
-        // change by more than 4 is enough.
+        // A pixel that changes by more than 24 in one rasteriser may change less in the other, so in the other a change
+        // by more than 4 is enough.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());
         assert!(seen.len() > 30, "layer {key}: only {} pixels change", seen.len());
@@ -64,10 +64,10 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// At most one pixel in this many may differ by more than 64, because of crossing lines.
+/// At most one pixel in this many may differ by more than 64 of 255 in a channel. Where lines cross, the rasterisers
+/// differ.
 const SHAPES: usize = 1000;
-/// In layers with small text, at most one pixel in this many may differ by more than 64, because only one of the two
-/// rasterisers aligns text to pixels.
+/// Like [`SHAPES`], for layers with small text: only one of the two rasterisers aligns text to pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.

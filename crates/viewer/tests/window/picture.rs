@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// Largest difference in any channel.
+/// Largest difference of two colours in a channel.
 pub(crate) fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
     (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap()
 }

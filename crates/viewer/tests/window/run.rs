@@ -30,7 +30,7 @@ pub(crate) fn command(directory: &Path, script: &str, args: &[&str]) -> Command 
     command
 }
 
-/// Runs a script in the window, and returns its reports.
+/// Runs a script in the window, and returns the lines that its `report` instructions print.
 pub(crate) fn play(directory: &Path, script: &str, args: &[&str]) -> Vec<String> {
     let Output { status, stdout, stderr } = command(directory, script, args).output().unwrap();
     assert!(status.success(), "{status}: {}", String::from_utf8_lossy(&stderr));

@@ -15,7 +15,8 @@ fn a_screenshot_is_what_is_on_the_screen() {
     let screen = PathBuf::from(
         std::env::var_os(SCREEN).expect("LOCKSTEP2D_SCREEN should be set by crates/viewer/test-window"),
     );
-    // All edges in this scene are along the axes. The screen may round the blending of slanted edges differently.
+    // All edges in this scene are parallel to the axes. The blending of slanted edges may be rounded differently on the
+    // screen.
     let (directory, replay) = (directory("screen"), golden("box_stack.replay"));
     let shot = directory.join("shot.png");
     let _none = std::fs::remove_file(&shot);

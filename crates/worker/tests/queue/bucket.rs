@@ -56,7 +56,7 @@ fn files_of_a_bucket_have_the_results_of_files() {
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
 
-    // One file is submitted first. When all files are submitted, this file is not queued again.
+    // One file is submitted first, so it is not queued again when all files are submitted.
     let one = program.submit(&["--bucket", "s3://uploads", "00007.replay"]);
     assert_eq!(one.len(), 1, "{one:?}");
     let all = program.submit(&["--bucket", "s3://uploads/"]);
@@ -95,7 +95,7 @@ fn a_folder_of_a_bucket_holds_what_is_in_it() {
     assert_eq!(names(&["s3://uploads", "day"]), ["day/b.replay", "day/night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day"]), ["b.replay", "night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day", "night", "b.replay"]), ["b.replay", "night/c.replay"]);
-    // Files with the same bytes are one job, which has the name of the first file.
+    // Files with the same bytes are one job. Its name is that of the file that was submitted first.
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 2);
     assert_eq!(child.terminate(), Some(0));

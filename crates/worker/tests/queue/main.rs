@@ -1,5 +1,5 @@
-//! The queue with a real server. Every file has one result, which is equal to the line of `verify --json`. This also
-//! holds if workers or the server are killed.
+//! The queue with a real server. Every file has one result, which is equal to the line of `verify --json`, even if
+//! workers or the server are killed.
 //!
 //! `LOCKSTEP2D_WORKER_FILES` is the number of files in the largest test, 300 by default.
 #![cfg(unix)]
@@ -37,7 +37,7 @@ fn random(state: &mut u64) -> u64 {
     value ^ (value >> 27)
 }
 
-/// A replay of squares that fall on the ground. Each `number` gives another game.
+/// A replay of squares that fall on the ground. Replays with different `number` have different bytes.
 fn replay(number: u64, squares: i64, ticks: u64) -> Vec<u8> {
     let square = |side: Fx| ShapeDef::new(Polygon::square(side).unwrap());
     let aside = fx!(0.0001) * i64::try_from(number).unwrap();
@@ -57,7 +57,7 @@ fn record(commands: Vec<Command>, ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Writes `count` files. Some are damaged, and some are cut.
+/// Writes `count` files. Of eleven files, one is damaged and one is truncated.
 fn write_files(folder: &Folder, count: u64) {
     for number in 0..count {
         let (squares, ticks) = if number % 20 == 0 { (50, 120) } else { (1, number % 97) };
@@ -92,7 +92,7 @@ fn worker(server: &Server, folder: &Folder) -> Program {
     Program { path, url: server.url(), folder: folder.0.clone(), variables: Vec::new() }
 }
 
-/// Answer of the metrics of a worker. Empty if it does not listen yet.
+/// Answer of a worker's metrics server; empty if the server does not listen yet.
 fn get(address: &str, path: &str) -> String {
     let Ok(mut stream) = TcpStream::connect(address) else { return String::new() };
     write!(stream, "GET {path} HTTP/1.1\r\n\r\n").unwrap();
@@ -185,7 +185,7 @@ fn two_workers_do_almost_twice_as_much_as_one() {
     assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// One file has 400 squares on one spot. For such a file, docs/VERIFYING.md states that `verify` takes 75 MB.
+/// One file has 400 squares on one spot; docs/VERIFYING.md states that `verify` takes 75 MB for such a file.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {

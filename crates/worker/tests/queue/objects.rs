@@ -42,7 +42,8 @@ fn a_deleted_object_is_stored_again() {
     assert_eq!(result["verdict"], "match", "{result}");
 }
 
-/// The pipe returns other bytes when it is opened again. A file that is still being written does this, too.
+/// `submit` opens the file twice. The pipe returns other bytes the second time, like a file that is still being
+/// written.
 #[test]
 fn a_file_that_changes_while_it_is_submitted_is_an_error() {
     let folder = Folder::new("changes");

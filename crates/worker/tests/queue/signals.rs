@@ -28,7 +28,7 @@ fn results_ends_while_it_connects() {
     let program = worker(&server, &folder);
     server.stop();
     let mut child = program.spawn("results", &[], Stdio::null());
-    // In the meantime, the program starts to listen to signals.
+    // Gives the program time to install its signal handler.
     thread::sleep(Duration::from_secs(1));
     child.signal();
     assert_eq!(end(&mut child, Duration::from_secs(5)), Some(0));
@@ -41,7 +41,7 @@ fn results_ends_while_nobody_reads_its_lines() {
     let program = worker(&server, &folder);
     // Creates the streams.
     assert!(program.results().is_empty());
-    // A pipe holds 64 KiB.
+    // 400 results of 1000 bytes do not fit into a pipe, which holds 64 KiB.
     with_server(&server, |context| async move {
         let name = format!("{}-{SEMANTICS}-{}", Sandbox::RULES.name, Sandbox::RULES.version);
         for number in 0..400 {
@@ -83,7 +83,7 @@ fn a_job_that_arrives_after_the_signal_goes_back_to_the_queue() {
     let address = format!("127.0.0.1:{}", free_port());
     let mut child = program.work(&["--metrics", &address]);
     wait_until("the worker runs", || !get(&address, "/metrics").is_empty());
-    // In the meantime, the worker asks for a job. The server holds each request for 2 s.
+    // Gives the worker time to request a job. The server holds this request for 2 s.
     thread::sleep(Duration::from_secs(1));
     child.signal();
     program.submit(&["in"]);

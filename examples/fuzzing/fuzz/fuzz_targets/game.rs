@@ -3,7 +3,7 @@
 
 use std::fs;
 
-// Your game, its setup and its number of players.
+// Replace these by your game, its setup and its number of players.
 use harvest::Harvest as MyGame;
 const PLAYERS: u32 = 2;
 fn setup() -> <MyGame as Game>::Setup {
@@ -14,7 +14,7 @@ use libfuzzer_sys::fuzz_target;
 use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use lockstep2d::lockstep::Game;
 
-/// Maximum length of a log in ticks. Longer logs are slower and rarely find more.
+/// Maximum length in ticks of a log of inputs. Longer logs take more time and rarely find more failures.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

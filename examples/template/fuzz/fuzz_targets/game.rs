@@ -8,7 +8,7 @@ use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use my_game::{MyGame, Setup};
 
 const PLAYERS: u32 = 2;
-/// Maximum length of a log in ticks. Longer logs are slower and rarely find more.
+/// Maximum length in ticks of a log of inputs. Longer logs take more time and rarely find more failures.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

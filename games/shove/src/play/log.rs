@@ -15,9 +15,9 @@ use serde_json::{Value, json};
 #[derive(Debug)]
 pub(super) struct Log {
     json: bool,
-    /// Number of played ticks, and the time when it last grew.
+    /// Number of played ticks, and the time when it last changed. `None` before the session has begun.
     tick: Option<(u64, Duration)>,
-    /// Longest time without a tick, and the time when it ended.
+    /// Longest time without a tick, and the time at which this stall ended.
     stall: (Duration, Duration),
     delay: Option<u16>,
     desync: Option<u64>,
@@ -134,7 +134,7 @@ pub(super) fn say_error(json: bool, error: &dyn Error) {
     eprintln!("error: {error}");
 }
 
-/// Prints a line, and ignores errors: the match continues if the reader of the output has gone.
+/// Prints a line. Errors are ignored, so that the match continues even if the reader of the output has gone.
 fn print(line: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stdout().lock(), "{line}");
 }

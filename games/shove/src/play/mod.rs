@@ -22,7 +22,7 @@ use lockstep2d_shove::online::{self, UdpPeer};
 use arguments::Arguments;
 use log::Log;
 
-/// Interval of updates. A received packet may wait for this time.
+/// Time between two updates of the peer. A packet that arrives in between is read at the next update.
 const UPDATE_INTERVAL: Duration = Duration::from_millis(1);
 
 pub(crate) fn command() -> Command {
@@ -44,7 +44,7 @@ pub(crate) fn run(matches: &ArgMatches) -> Exit {
     }
 }
 
-/// Plays a match, and returns the first desync.
+/// Plays a match. Returns the first desync that this peer has detected, if any.
 fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     for path in arguments.output.iter().chain(&arguments.report) {
         check_absent(path)?;
@@ -58,7 +58,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         peer.end_at(ticks);
     }
     let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
-    // The summary is written even after an error.
+    // The replay and the summary are written even if `take_part` has failed.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
     if let (Some(file), Some(path)) = (&mut file, &arguments.output) {
@@ -76,8 +76,9 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     played
 }
 
-/// Opens the file of the replay or the report. The replay is written during the match, so a killed process leaves a
-/// replay without a trailer. Two processes cannot create the same file.
+/// Creates the file of the replay or the report. An existing path is opened only if it is not a regular file, for
+/// example a pipe. Two processes cannot create the same file. The replay is written during the match, so a killed
+/// process leaves a replay without a trailer.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     let file = match File::create_new(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -134,7 +135,7 @@ fn take_part(
             }
             (0, None | Some(Status::Paused)) => {}
             (0, Some(_)) => heard_at = now,
-            // The peer is not in a match yet.
+            // The user has interrupted the process before it was in a match, so there is nothing to leave.
             (_, None) => break,
             (1, Some(_)) => peer.leave(),
             // The second signal: this process exits without waiting for the others.

@@ -15,7 +15,7 @@ pub const SEAT_COLOURS: [Colour; 4] =
 
 /// Neutral grey, visible on light and dark backgrounds.
 const NEUTRAL: Colour = Colour::hex(0x8a_8f98);
-/// Background of the scores, which have bright colours.
+/// Background of the scores. It is dark because the scores have bright colours.
 const PLATE: Colour = Colour::hex(0x14_181d);
 /// Colour of the headline.
 const TITLE: Colour = Colour::hex(0xe4_e7eb);
@@ -103,8 +103,8 @@ fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     }
 }
 
-/// Colour and text of a seat. The text is the seat's number and its points. The points are in brackets if the player
-/// has fallen. An empty seat has a hyphen instead.
+/// Colour and text of a seat. The text is the seat's number and its points, for example `1: 7`. The points are in
+/// brackets if the player has fallen. An empty seat has a hyphen instead of points.
 fn score((seat, player): (usize, Player)) -> (Colour, String) {
     let points = match player {
         Player { present: false, .. } => "-".into(),
@@ -114,7 +114,8 @@ fn score((seat, player): (usize, Player)) -> (Colour, String) {
     (SEAT_COLOURS[seat % SEAT_COLOURS.len()], format!("{}: {points}", seat + 1))
 }
 
-/// Points of a part of a circle, clockwise from the top. The radius is in pixels.
+/// Points of an arc, clockwise from the top of the circle. `radius` is in pixels, and `part` is the fraction of the
+/// full circle.
 fn arc(camera: &Camera, centre: Vec2<Fx>, radius: f32, part: f32) -> impl Iterator<Item = [f32; 2]> {
     let [x, y] = camera.place(centre);
     (0..=CORNERS).map(move |corner| {

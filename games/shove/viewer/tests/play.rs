@@ -211,7 +211,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
         assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
-    // The host leaves. No peer answers, so it waits for half a second at most.
+    // The host leaves. The guest is no longer updated and does not answer, so `close` waits for at most half a second.
     let [host, _] = &mut guests;
     host.close();
     assert!(host.status().ends_with("out of the match"), "{}", host.status());

@@ -40,7 +40,7 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
-    // The common denominator of all terms, and pi in units of that denominator.
+    // All terms are numerators over the common denominator `over`. `pi` is the numerator of pi.
     let (over, pi) = (12 * PI_DENOMINATOR, 12 * PI_NUMERATOR);
     let area = over * (4 * a * b + 4 * (a + b) * r) + pi * r * r;
     let core = over / 3 * 4 * a * b * (a * a + b * b);

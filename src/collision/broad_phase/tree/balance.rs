@@ -14,9 +14,10 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling if the exchange shrinks the sibling. The new height of `at`
-    /// differs from `height_before` by at most one, because [`Tree::balance`] of an ancestor restores no larger
-    /// difference.
+    /// Exchanges a child of `at` with a child of its sibling, if this shrinks the sibling's box. Of the exchanges that
+    /// keep the nodes balanced, chooses the one that shrinks it most. An exchange after which the height of `at` would
+    /// differ from `height_before` by more than one is not allowed, because [`Tree::balance`] of an ancestor could not
+    /// make up for the difference.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
@@ -39,7 +40,7 @@ impl Tree {
     }
 
     /// Whether a node stays balanced if the first of three nodes becomes its child, and the other two its
-    /// grandchildren.
+    /// grandchildren. Its height must then differ from `height_before` by at most one.
     fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);

@@ -54,8 +54,8 @@ pub(in crate::collision::broad_phase) struct Meetings {
 }
 
 impl Meetings {
-    /// Finds each pair of overlapping boxes of a tree once, except within subtrees of one collision class. Skips a pair
-    /// of nodes if neither of them is `wanted`.
+    /// Finds each pair of overlapping boxes of a tree once, except pairs within a subtree of one collision class. Skips
+    /// a pair of nodes if neither of them is `wanted`.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,
@@ -80,7 +80,7 @@ impl Meetings {
         self.found.tell(&mut found);
     }
 
-    /// [`Meetings::within`] for a box of one tree and a box of another.
+    /// Like [`Meetings::within`], but for pairs of a box of `tree` and a box of `other`.
     pub(in crate::collision::broad_phase) fn between(
         &mut self,
         tree: &Tree,

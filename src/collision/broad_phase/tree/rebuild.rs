@@ -10,8 +10,8 @@ use crate::math::Aabb;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rebuilt {
     cost: u64,
-    /// Nodes before the last rebuild. A rebuild swaps this list with the tree's, reads the old nodes and writes the new
-    /// tree.
+    /// The nodes as they were before the last rebuild. A rebuild swaps this list with that of the tree, reads the old
+    /// nodes here, and writes the new nodes to the tree.
     nodes: Vec<Node>,
     loose: Vec<Loose>,
     waiting: Vec<Part>,
@@ -62,7 +62,7 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // Rebuilds after many relinks, or if the cost has grown by a quarter.
+        // Rebuilds after many insertions and removals, or if the cost has grown by more than a quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }

@@ -25,7 +25,7 @@ pub(super) struct Collide<'a> {
     pub(super) boxes: &'a [Turned],
 }
 
-/// The first two normals and vertices of a box.
+/// The first two normals and vertices of a box. The other two are their negatives.
 #[derive(Clone, Copy)]
 struct Corners<T> {
     n: [Vector<T>; 2],
@@ -46,14 +46,15 @@ struct Edge<T> {
     end: Vector<T>,
 }
 
-/// Position along the reference edge from its start in units of `Length`, and height above the edge in units of `Step`.
+/// An end of the incident edge, before or after clipping: position along the reference edge, from its start, in raw
+/// units of `Length`, and height above the reference edge in raw units of `Step`.
 #[derive(Clone, Copy)]
 struct ClipPoint<T> {
     along: T,
     above: T,
 }
 
-/// Radii and margin are in units of `Step`.
+/// Reference edge of a pair. Radii and margin are in raw units of `Step`.
 struct Reference<T> {
     n: Vector<T>,
     /// Start of the edge, relative to the centre of A.
@@ -108,7 +109,8 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let from_reference = select_vector::<L>(swapped, negated::<L>(d), d);
     let to_incident = minus::<L>(from_reference, reference.start);
     let length = along::<L>(reference.n, minus::<L>(reference.end, reference.start));
-    // The incident edge points in the opposite direction of the reference edge, so its start is the upper end.
+    // The incident edge points against the reference edge. Its start is therefore the `upper` end: the one farther
+    // along the reference edge.
     let upper = end::<L>(reference.n, plus::<L>(to_incident, incident.start));
     let lower = end::<L>(reference.n, plus::<L>(to_incident, incident.end));
     let mut open = L::either(L::greater(zero, upper.along), L::greater(lower.along, length));
@@ -214,7 +216,8 @@ fn best_face<L: Lanes<WIDTH>>(
 ) -> (Choice<L::Mask>, L::Wide) {
     let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
     let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
-    // On a tie, the second candidate wins only if it is face 1 and the first candidate is face 2.
+    // The first candidate is face 0 or 2, the second is face 1 or 3. Ties go to the lower index, so on a tie the second
+    // candidate wins only as face 1 against face 2.
     let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
     let advantage = L::mul(L::to_int(ahead), L::splat(-1));
     let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
@@ -295,8 +298,8 @@ fn along<L: Lanes<WIDTH>>(n: Vector<L::Int>, p: Vector<L::Int>) -> L::Int {
     L::narrow::<UNIT>(L::sub_wide(L::mul(n[0], p[1]), L::mul(n[1], p[0])))
 }
 
-/// Whether a corner and an end of the reference edge are nearest to each other: each lies beyond an end of the other's
-/// edge. The incident edge runs from `corner` to `other`.
+/// Whether the nearest features are the end `corner` of the incident edge and an end of the reference edge. They are if
+/// each of the two lies beyond the other edge. `other` is the other end of the incident edge.
 #[inline(always)]
 fn nearest_at_corner<L: Lanes<WIDTH>>(
     length: L::Int,

@@ -1,7 +1,8 @@
 //! Clipping of the incident edge of one outline against the reference face of another.
 //!
-//! With the start `v1`, the tangent `t` and the normal `n` of the reference face and the radii `rA` and `rB`, the
-//! position of a point of the incident edge is measured along and above the face:
+//! Let `v1`, `t` and `n` be the start, the tangent and the normal of the reference face, and `rA` and `rB` the radii of
+//! the outlines. A point of the incident edge is at the distance `along` from `v1` in the direction of `t`, and at the
+//! distance `above` in the direction of `n`. Its contact point has
 //!
 //! ```text
 //! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
@@ -16,11 +17,12 @@ use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 /// Difference between the numbers of fraction bits of a `Step` and of a `Length`.
 pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
-/// Fraction bits of the clip fraction. Its product with the length of an edge, at most 570 m, has 63 bits.
+/// Fraction bits of the clip fraction, the part of the incident edge that is cut off. The product of this fraction and
+/// the length of an edge (at most 570 m, in units of `Step`) has 63 bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
-/// End of an edge relative to the start of the reference edge, not saturated: `along` in units of `Length`, and `above`
-/// in units of `Step`.
+/// Position of an end of an edge, relative to the start of the reference edge: `along` the reference edge in units of
+/// `Length`, and `above` it in units of `Step`. The numbers are not saturated.
 #[derive(Clone, Copy)]
 struct ClipPoint {
     vertex: usize,
@@ -28,7 +30,8 @@ struct ClipPoint {
     above: i64,
 }
 
-/// Clips the incident edge of `b` against a face of `a`. Anchors are relative to the centre of `a`.
+/// Clips the incident edge of `b` against a face of `a`. `apart` is whether the outlines without their radii are
+/// disjoint. Anchors are relative to the centre of `a`.
 pub(in crate::collision) fn clip(
     a: &Hull,
     b: &Hull,
@@ -43,7 +46,8 @@ pub(in crate::collision) fn clip(
         ClipPoint { vertex: face.edge, along: 0, above: 0 },
         ClipPoint { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
     );
-    // Both outlines run counter-clockwise, so the second vertex of the incident edge is the lower end.
+    // Both outlines run counter-clockwise, so the incident edge runs backwards along the reference face: its first
+    // vertex is the upper end, and its second vertex is the lower end.
     let to_b = between(v1, d);
     let end_of_b = |vertex: usize| {
         let position = b.vertex(vertex);
@@ -53,8 +57,9 @@ pub(in crate::collision) fn clip(
     let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
     let mut incident = incident_edge(b, normal);
     let (mut upper, mut lower) = edge_of_b(incident);
-    // On an outline with small bends, the edge most opposed to the face may lie beside the face while one of its
-    // neighbours is in front of the face. For separate outlines, the nearest corner is an end of the most opposed edge.
+    // On an outline with small bends, the edge most opposed to the face may lie beside the face while a neighbour of
+    // this edge is in front of the face. The loop then moves on to the neighbour. Separate outlines do not need this:
+    // their nearest corner is an end of the most opposed edge.
     let neighbours = if apart { 0 } else { b.faces() };
     for _ in 0..neighbours {
         let neighbour = if upper.along < first.along {
@@ -74,8 +79,8 @@ pub(in crate::collision) fn clip(
     let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
-        // If outlines overlap deeply, no incident edge may be in front of the face. The deepest corner then pushes them
-        // apart.
+        // The incident edge lies beside the face, so there is nothing to clip. This also happens to outlines that
+        // overlap deeply: the end of the incident edge that is nearest to the face then pushes them apart.
         let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
             Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
@@ -86,8 +91,8 @@ pub(in crate::collision) fn clip(
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
         // Nearly parallel rounded edges also have two corners as nearest points, but need a contact point at each end.
-        // They are recognised by the distance of the corners, which is not much below the height of the clipped edge
-        // and not much above the separation of the face.
+        // The edges are nearly parallel if the distance between the corners is at most `TOLERANCE` below the height of
+        // the clipped edge's nearer end and at most `TOLERANCE` above the separation of the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
@@ -99,7 +104,8 @@ pub(in crate::collision) fn clip(
     context.face([(first.vertex, low), (last.vertex, high)])
 }
 
-/// The two corners that are nearest features of two separate edges: each lies beyond the end of the other edge.
+/// The two corners that are the nearest points of two separate edges: each corner lies beyond an end of the other edge.
+/// `None` if a nearest point lies inside an edge.
 fn nearest_corners(
     first: ClipPoint,
     last: ClipPoint,
@@ -109,7 +115,7 @@ fn nearest_corners(
     let beyond_incident = |a: ClipPoint, b: ClipPoint, other: ClipPoint| {
         let from_b = |end: ClipPoint| (end.along - b.along, (end.above - b.above) >> FINER);
         let (outward, edge) = (from_b(a), from_b(other));
-        // Points of a pair differ by less than 512 m, so each product has at most 62 bits.
+        // The product of the two vectors' lengths is below (512 m)^2, which is 2^62 units, so the sum fits 64 bits.
         outward.0 * edge.0 + outward.1 * edge.1 < 0
     };
     [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
@@ -123,8 +129,8 @@ fn nearest_corners(
     })
 }
 
-/// Edge whose normal is most opposed to `normal`. The first edge wins a tie. In a tie between edges of a box, edge 0 or
-/// 2 wins.
+/// Edge whose normal is most opposed to `normal`. On a tie, the edge with the lowest index wins, but in a box, edge 0
+/// or 2 wins against edge 1 or 3.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);
@@ -171,7 +177,8 @@ fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
     round_shift(above, FACE_BITS - Step::FRAC_NBITS)
 }
 
-/// Moves an end along its edge to a limit between the two ends.
+/// Moves `end` along its edge, towards `other`, to the point at which `along` is `limit`. The limit is between the two
+/// ends.
 #[inline]
 fn clipped(end: ClipPoint, other: ClipPoint, limit: i64) -> ClipPoint {
     let fraction = ((limit - end.along) << CLIP_BITS) / (other.along - end.along);
@@ -207,7 +214,8 @@ impl Gap {
 }
 
 impl Clip<'_> {
-    /// Contact points at ends of B's edge. Each end is given with the vertex of A that it is paired with.
+    /// Contact points at ends of B's edge. Each end comes with the vertex of A that is the other half of the point's
+    /// [`Feature`].
     #[inline(always)]
     fn face<const N: usize>(&self, ends: [(usize, ClipPoint); N]) -> Manifold {
         let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
@@ -226,7 +234,8 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Adds the contact point at an end of B if it is within the margin.
+    /// Adds the contact point at `end` if its separation is at most the margin. The position of `end` is relative to
+    /// `start`, and `vertex` is the vertex of A in the point's feature.
     #[inline(always)]
     fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, vertex: usize, end: ClipPoint) {
         let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));

@@ -1,4 +1,4 @@
-//! Tests of chains.
+//! Tests of contacts between chains and other shapes.
 
 use alloc::vec::Vec;
 
@@ -56,7 +56,8 @@ fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     }
 }
 
-/// Smallest distance over all pairs of a vertex and an edge.
+/// Distance between a closed outline and a polyline that do not cross, by brute force over all pairs of a vertex and an
+/// edge.
 fn distance(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> Fx {
     let from_line = outline.iter().flat_map(|&corner| {
         line.windows(2).map(move |link| closest_point_on_segment(corner, link[0], link[1]).distance(corner))

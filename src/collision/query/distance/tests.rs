@@ -5,7 +5,7 @@ use crate::collision::shape::support::{samples, to_grid};
 use crate::fx;
 use crate::math::{Rng, Rot, closest_point_on_segment, point_in_polygon, segment_intersection};
 
-/// `None` if the cores share a point.
+/// Distance of two cores in metres, by brute force. `None` if the cores share a point.
 fn naive(a: &SupportShape, b: &SupportShape) -> Option<Fx> {
     let (a, b) = (samples::world_points(a), samples::world_points(b));
     if point_in_polygon(&a, b[0]) || point_in_polygon(&b, a[0]) {
@@ -53,7 +53,8 @@ fn distance_is_that_of_the_nearest_vertex_and_edge() {
     assert!(worst < fx!(0.00000002), "the largest error should be below 20 nm, not {worst} m");
 }
 
-/// Moving by the depth along the normal makes the shapes touch. Moving less, in any direction, leaves an overlap.
+/// If B moves by the depth along the normal, the shapes touch. If B moves by less, in any direction, they still
+/// overlap.
 #[test]
 fn depth_is_the_shortest_way_out() {
     let mut rng = Rng::new(2);

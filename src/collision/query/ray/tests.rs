@@ -35,8 +35,8 @@ fn rays_hit_what_sphere_tracing_hits() {
             (Ok(None), None) => misses += 1,
             (Ok(Some(way)), Some(hit)) => {
                 hits += 1;
-                // Sphere tracing stops 2e-7 m before the surface. At a grazing angle, this is a longer way along the
-                // ray, so the error is measured across the surface.
+                // Sphere tracing stops 2e-7 m before the surface. At a grazing angle, this distance is much longer
+                // along the ray, so the error is measured along the surface normal.
                 let found = fx_mul(hit.fraction, translation.length());
                 let steep = -translation.normalized().unwrap().widen().dot(hit.normal.widen());
                 assert!(steep >= 0, "{hit:?} {shape:?}");
@@ -141,7 +141,8 @@ fn segments_are_hit_from_both_sides_and_at_their_ends() {
     assert_eq!(hit(fx!(0), fx!(0), fx!(0), fx!(0)), None);
     assert_eq!(hit(fx!(0), fx!(0), fx!(0.5), fx!(0)), None);
 }
-/// A rounding error may put the point of a hit outside of the surface.
+/// A rounding error may put the hit point slightly outside of the shape. A ray from there in the same direction must
+/// hit the shape again.
 #[test]
 fn a_ray_that_continues_from_a_hit_does_not_pass_through() {
     let mut rng = Rng::new(6);

@@ -151,7 +151,8 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     let spin = Sweep { turn: turn(fx!(0.83)), ..Sweep::fixed(ORIGIN) };
     let pinned = Sweep::fixed(at(fx!(0.9), fx!(0.4)));
     let hit = time_of_impact(&pin, &pinned, &rod, &spin, Fx::ZERO);
-    // The pin is at 0.418 rad. Its radius and the half thickness of the rod take up 0.02 / 0.985 rad.
+    // Seen from the centre of the rod, the pin is at 0.418 rad and 0.985 m away. The pin's radius and half the
+    // thickness of the rod are 0.02 m together, so they take up 0.02 / 0.985 rad.
     assert!(
         matches!(hit, TimeOfImpact::Hit { fraction } if (fraction - fx!(0.479)).abs() < fx!(0.001)),
         "{hit:?}"

@@ -43,9 +43,9 @@ pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
     support(rng).moved(to_grid(vector(rng, spread)))
 }
 
-/// Sphere tracing: distance in metres along a path of `length` metres at which the path reaches a surface, within 2e-7
-/// m. `gap_at` returns the distance from the surface. `Err` if the path passes within 2e-6 m of the surface without
-/// reaching it, or takes more than 2000 steps.
+/// Sphere tracing: distance along a path of `length` metres at which the path comes within 2e-7 m of a surface.
+/// `Ok(None)` if the path misses the surface. `gap_at` returns the distance from the surface. `Err` if the path passes
+/// within 2e-6 m of the surface without reaching it, or takes more than 2000 steps.
 pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) -> Result<Option<Fx>, ()> {
     let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
     for _ in 0..2000 {
@@ -62,7 +62,7 @@ pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) 
     Err(())
 }
 
-/// Points at bounds of the world or of the format.
+/// Points whose coordinates are at the bounds of the world or of the number format.
 pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
     let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
     ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))

@@ -13,9 +13,9 @@ use core::arch::x86_64::*;
 
 use super::{LANES, multiplied};
 
-/// Number of chords, selected by the leading bits of a mantissa.
+/// Number of chords that approximate the curve `1 / m`. The leading bits of `m` select the chord.
 const CHORDS: usize = 16;
-/// Number of mantissa bits that give the position on the chord.
+/// Number of the other bits of `m`, which give the position on the chord.
 const REST: u32 = 27;
 
 /// `2^62 / m` at the start of each chord, minus 1, so that the values fit 31 bits.
@@ -84,7 +84,7 @@ fn quotient<const BITS: u32>(d: __m512i) -> __m512i {
         let less = |from: u32, a| _mm512_sub_epi64(_mm512_set1_epi64(from.into()), a);
         let spare = _mm512_lzcnt_epi64(d);
         let m = _mm512_srli_epi64::<32>(_mm512_sllv_epi64(d, spare));
-        // The permutation uses only the lowest bits of an index.
+        // The permutation uses only the lowest four bits of an index, which are those after the leading bit of `m`.
         let chord = _mm512_srli_epi64::<REST>(m);
         let looked_up = |table: &[i32; CHORDS]| {
             _mm512_maskz_permutexvar_epi32(LANES, chord, _mm512_loadu_si512(table.as_ptr().cast()))

@@ -160,7 +160,7 @@ fn unchecked_contacts_end_as_checked_ones() {
     assert!(unchecked > 2000 && wild > 2000, "{unchecked} trials were within the bounds and {wild} were not");
 }
 
-/// Impulses `d` on a row. All velocity components equal `start` at first.
+/// Impulses `d` that are applied to a row. At first, all velocity components equal `start`.
 struct Applying {
     row: Row<WIDTH>,
     d: Ints<WIDTH>,
@@ -190,7 +190,7 @@ fn an_impulse_changes_velocities_alike_beside_any_other() {
     for round in 0..300 {
         let mut gains = || {
             Ints(core::array::from_fn(|_| {
-                // With equal masses, an impulse changes both velocities by exactly one half.
+                // With equal masses, a gain is exactly one half.
                 let half = 1 << 29;
                 [half, -half, (rng.next_u32() >> 2).cast_signed() - half][rng.below(3) as usize]
             }))

@@ -3,8 +3,8 @@
 //!
 //! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
 //! the units without bounds. Then it deactivates the active units beyond a bound, and holds them at that bound. The
-//! rounds end when no active unit is beyond a bound. The first [`ROUNDS_MAX`] rounds deactivate only the motors that
-//! are furthest beyond their bounds, and no other motors.
+//! rounds end when no active unit is beyond a bound. In the first [`ROUNDS_MAX`] rounds, motors beyond their bounds
+//! stay active, except those that are furthest beyond.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -32,7 +32,8 @@ const OPEN_SCALE: i64 = ONE - (1 << 20);
 /// the impulse times `1 - S^2`, and impulses at long lever arms are large.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of initial rounds that deactivate only the motors furthest beyond their largest force, and no other motors.
+/// Number of initial rounds in which, among the motors beyond their largest force, only those furthest beyond are
+/// deactivated.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
@@ -86,7 +87,7 @@ impl Block {
         }
     }
 
-    /// Deactivates active units beyond a bound. Returns whether there were any.
+    /// Deactivates active units beyond a bound. Returns whether a unit was deactivated.
     ///
     /// With `furthest_only`, a motor is deactivated only if its [`Unit::excess`] is at least half the largest excess.
     /// While a brake holds a strong motor, the equations give the brake and the motor the same impulse, but only the

@@ -1,9 +1,9 @@
 //! The choice and the order of the joints that are solved in blocks.
 //!
-//! One iteration solves a body with one joint exactly, and a chain of similar bodies well. It fails at bodies whose
-//! joints disturb each other, and may add energy there. An impulse at the point of a hinge changes the velocity of the
-//! point through both bodies. The *share* of a body is its part of this change: large if the body is light or its arm
-//! is long. A body is *crowded* if two or more joints hold it and
+//! One iteration solves a body with one joint exactly, and a chain of similar bodies well. Iterations fail at bodies
+//! whose joints disturb each other, and may add energy there. An impulse at the point of a hinge changes the velocity
+//! of the point through both bodies. The *share* of a body is its part of this change: large if the body is light or
+//! its arm is long. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them is not a revolute joint, or
 //! - its share is large at two hinges ([`PAIR_MIN`]), or
@@ -26,11 +26,11 @@ use crate::math::{Fx, Unit, fx_mul};
 /// size costs about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
-/// A body is crowded if its share at each of two hinges is at least this.
+/// A body is crowded if it has a share of at least this at each of two hinges.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// A body is crowded if the sum of its shares, without the largest share, is at least this. In cloth of discs the sum
-/// is 1.5.
+/// A body is crowded if the sum of its shares, without the largest share, is at least this: 1.52. In cloth of discs,
+/// each with four hinges, the sum is 1.5, so cloth is not solved in blocks.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// A joint that may be solved in a block.
@@ -38,8 +38,8 @@ const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 pub(in super::super) struct Candidate {
     /// The bodies of the joint, with the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows in a block. Springs, limits, motors along one direction and rows that hold the bodies count. A
-    /// joint without such rows is not solved in a block.
+    /// Number of the joint's rows in a block: those of springs, limits and motors along one direction, and those that
+    /// hold the bodies. A joint without such rows is not solved in a block.
     pub(in super::super) rows: u32,
     /// Whether the joint has rows besides the row of a motor.
     pub(in super::super) holds: bool,
@@ -77,7 +77,7 @@ impl Candidate {
         };
         let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
         let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
-        // The fraction of the lighter body has more significant bits.
+        // The lighter body has the larger fraction, which has more significant bits.
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (mass, fraction) =
             if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
@@ -115,7 +115,7 @@ impl Crowd {
 /// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
-/// The joints of a crowded body in `Choice::of_body`, as one range for each number of rows.
+/// The joints of a crowded body, as ranges of `Choice::of_body`: one range for each number of rows.
 #[derive(Clone, Copy, Debug, Default)]
 struct JointsOfBody {
     /// For each range, the first joint that is not in a block yet.
@@ -163,7 +163,7 @@ impl Choice {
         for first in 0..candidates.len() {
             let is_chosen = candidates[first].rows > 0
                 && candidates[first].bodies.iter().any(|&body| self.places[body as usize] != NOT_CROWDED);
-            // A block that starts at another joint may be full before it reaches this joint.
+            // The block starts again at its rim (`add_block`), and may be full before it reaches the joint `first`.
             while is_chosen && !self.settled[first] {
                 self.add_block(candidates, index(first));
             }
@@ -263,8 +263,9 @@ impl Choice {
         }
     }
 
-    /// Adds the joints of a body to the walk, in ascending order. Takes and returns the number of rows in the walk.
-    /// This number only grows during a walk, so a joint that does not fit is not tried again.
+    /// Adds the joints of a body to the walk, in ascending order, as long as they fit in the block. Takes and returns
+    /// the number of rows in the walk. This number only grows during a walk, so a joint that does not fit is not tried
+    /// again.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

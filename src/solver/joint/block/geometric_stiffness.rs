@@ -56,7 +56,8 @@ impl Blocks {
         list: &JointList,
         rotation_of: impl Fn(u32, i64) -> i64,
     ) {
-        // The impulses of the last tick are known, but the rows on which they act are not computed yet.
+        // In the first sub-step, the impulses of the last tick are known, but the rows on which they act are not
+        // computed yet.
         if core::mem::take(&mut self.is_first_sub_step) {
             self.refresh(hinges, list);
         }

@@ -17,8 +17,8 @@ use crate::math::{round_shift, round_shift_wide, saturate, saturate_wide};
 
 pub(super) const ONE: i64 = 1 << 30;
 
-/// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. The relax pass adds four times as
-/// much to the diagonal.
+/// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. `EXCESS`, which the relax pass adds
+/// to the diagonal, is four times as much.
 const PIVOT_MIN: i64 = 1 << 44;
 
 /// Entries below the diagonal. The diagonal is 1 and not stored.

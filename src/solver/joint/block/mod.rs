@@ -13,14 +13,15 @@
 //!
 //! The scale of a spring between two points contains its softness, so its `S` is 1.
 //!
-//! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies and `m_least`
-//! the smallest reduced mass in the block, because the matrix is symmetric for impulses but not for speeds.
+//! Impulse changes are stored as speeds, but the matrix is symmetric only for impulses. The right-hand side is
+//! therefore also divided by `Q = sqrt(m_least / m)`, and the solution multiplied by it. `m` is the reduced mass of the
+//! two bodies, and `m_least` is the smallest reduced mass in the block.
 //!
 //! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
 //! eigenvalue of its matrix is at least the smallest impulse scale, even if rows depend on each other, as in a loop of
 //! welds. With springs between points at long arms the eigenvalue may be smaller. `matrix.rs` therefore bounds the
-//! pivots. In the relax pass, which has no impulse scales, [`EXCESS`] is added to the diagonal. `L` has 32 fraction
-//! bits.
+//! pivots. In the relax pass, which has no impulse scales, [`EXCESS`] is added to the diagonal. In a block, impulses
+//! `L` have 32 fraction bits.
 
 mod bounds;
 mod choice;
@@ -91,12 +92,12 @@ struct Block {
     /// Bodies, and changes of their velocities with 32 fraction bits. The update of the inertia uses the changes as
     /// working memory.
     bodies: Vec<(u32, [i64; 3])>,
-    /// Places of the bodies of each unit in `bodies`.
+    /// For each unit, the indices of its two bodies in `bodies`.
     places: Vec<[u32; 2]>,
     /// Factor of geometric stiffness on the inverse inertia of each body.
     spins: Vec<i64>,
     wanted: Vec<i64>,
-    /// The unknowns, with 32 fraction bits.
+    /// Working memory for the right-hand side and the solution of the equations, with 32 fraction bits.
     x: Vec<i64>,
 }
 
@@ -124,8 +125,8 @@ impl Blocks {
         &self.choice.order
     }
 
-    /// For each chosen joint, `numbers` contains the number of a hinge among the hinges in blocks, or the slot of any
-    /// other joint. `parts` is sorted by slot.
+    /// Makes the blocks of the chosen joints. For each of these joints, `numbers` contains the number of a hinge among
+    /// the hinges in blocks, or the slot of any other joint. `parts` is sorted by slot.
     pub(super) fn arrange(
         &mut self,
         hinges: &HingeSet,

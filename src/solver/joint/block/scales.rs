@@ -15,7 +15,7 @@ pub(super) struct Scales {
     pub(super) inwards: Vec<i64>,
     /// `S Q`, by which the solution is multiplied.
     pub(super) outwards: Vec<i64>,
-    /// `impulseScale`.
+    /// `impulseScale` of the equations in `mod.rs`.
     pub(super) yields: Vec<i64>,
 }
 

@@ -31,7 +31,7 @@ pub(super) struct Scaling {
     inverse: [i64; 3],
 }
 
-/// Signs: B's velocity is measured relative to A's.
+/// Signs of the velocities of A and B in the relative velocity, that of B minus that of A.
 const SIGNS: [i64; 2] = [-1, 1];
 
 impl Scaling {

@@ -70,7 +70,7 @@ impl Block {
         }
         let limits = bounded.iter().map(|bounded| &units[bounded.unit]);
         for row in limits.filter(|limit| limit.is_open(hinges, list)).map(|limit| limit.row) {
-            // A limit that is not reached is not soft.
+            // A limit that is not reached is not soft, so the term with its impulse scale is removed.
             if pass == Pass::Bias {
                 wanted[row] = wanted[row].saturating_add(product(impulses[row], bias.yields[row]));
             }

@@ -23,7 +23,8 @@ fn random_matrix(rng: &mut Rng, size: usize) -> Matrix {
     matrix
 }
 
-/// `S A S x + (1 - S^2) x` is the right-hand side, within 2^-20 of its largest entry.
+/// The solution `x` satisfies the equations: `S A S x + (1 - S^2) x` differs from the right-hand side by less than
+/// 2^-20 of the largest number.
 #[test]
 fn a_factor_solves_its_equations() {
     let mut rng = Rng::new(21);
@@ -61,7 +62,7 @@ fn roots_and_inverses_are_those_of_theory() {
     }
 }
 
-/// Dividing and multiplying again is exact to 2^-18: the 30 fraction bits of a root, times the largest condition
+/// Multiplying by `K` and dividing again is exact to 2^-18: the 30 fraction bits of a root, times the largest condition
 /// number, 2^9, and a few roundings. With geometric stiffness, a body yields less to an impulse across its arm.
 #[test]
 fn impulses_are_the_same_whatever_the_denominator() {

@@ -49,8 +49,8 @@ pub(super) struct Unit {
     angle_scaling: Scaling,
     pub(super) leverage: Leverage,
     is_limited: bool,
-    /// Denominator of the effective mass with geometric stiffness, divided by the denominator without it, with 30
-    /// fraction bits.
+    /// Denominator of the unit's row with geometric stiffness, divided by the denominator without it, with 30 fraction
+    /// bits.
     stiffened: i64,
 }
 
@@ -120,7 +120,7 @@ impl Unit {
         self.row..self.row + self.rows().count()
     }
 
-    /// The numbers of the unit's first two rows, from a list for all rows of the block.
+    /// The entries for the unit's first two rows in a list with a number for each row of the block.
     pub(super) fn impulses(&self, numbers: &[i64]) -> [i64; 2] {
         let mut own = [0; 2];
         self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
@@ -256,7 +256,7 @@ impl Unit {
         [x, y, self.angle_scaling.divide([angle, 0])[0]]
     }
 
-    /// `R R^T p`, the reverse of [`Self::exerted`].
+    /// `R R^T p`, the inverse of [`Self::exerted`].
     pub(super) fn scaled_by_denominator(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.multiply([x, y]);
         [x, y, self.angle_scaling.multiply([angle, 0])[0]]

@@ -152,7 +152,7 @@ impl<const N: usize> AngleRows<N> {
     }
 
     /// Computes the pushes of springs and limits at the current pose. `turns` are the joint angles at the start of the
-    /// tick.
+    /// tick, in units of 2^-32 turn.
     pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
@@ -332,8 +332,8 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Angular velocity of B relative to A. A velocity that does not fit counts as a fault in lanes in which `max` is above
-/// 0: the lanes with a row.
+/// Angular velocity of B relative to A, as a speed. In lanes in which `max` is above 0 (the lanes with a row), a
+/// velocity that does not fit counts as a fault.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],

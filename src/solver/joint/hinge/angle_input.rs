@@ -17,7 +17,7 @@ pub(in super::super) const ANGLE_MAX: Speed = Speed::lit("511");
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleParts {
     pub(in super::super) spring: Option<Spring>,
-    /// Whether the angle is held rigidly at 0, if there is no spring.
+    /// Whether the angle is held rigidly at 0. It is ignored if there is a spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
     pub(in super::super) limit: Option<JointLimit>,
@@ -30,13 +30,13 @@ impl AngleParts {
     }
 }
 
-/// Cache of results for earlier hinges, because a result takes many divisions and many joints are equal. An entry
-/// depends only on its key and does not become invalid.
+/// Cache of the numbers that depend only on a spring or on the bodies of a hinge, because they take many divisions and
+/// many joints are equal. An entry depends only on its key and does not become invalid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
     /// The last spring (hertz, damping ratio, rate) and its softness.
     spring: Option<((Fx, Fx, u32), Softness)>,
-    /// Rows by the hash of their key.
+    /// Numbers of a row on the angle, at the hash of their key.
     angulars: Vec<Option<Angular>>,
 }
 

@@ -20,7 +20,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) f: [[Ints<N>; 2]; 2],
     /// The negated velocity that closes the gap.
     pub(super) bias: [Ints<N>; 2],
-    /// `L`, in world axes.
+    /// The accumulated impulse `L` along the x and y axes of the world.
     pub(super) lambda: [Ints<N>; 2],
     /// Whether the hinges have rows on the angle, in [`super::angle::AngleRows`].
     pub(super) has_angle: bool,

@@ -82,8 +82,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses if an iteration solved each part alone. The impulses start at 0, because
-    /// [`Self::take_impulses`] has moved them to the block.
+    /// The changes of the impulses at the point and on the angle, if an iteration solved each of these parts alone. The
+    /// impulses start at 0, because [`Self::take_impulses`] has moved them to the block.
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -189,7 +189,7 @@ impl HingeSet {
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
-    /// Returns impulses to the hinge. The impulses must be within the limits of the state.
+    /// Returns impulses to the hinge. They must be within the bounds of impulses in the state.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.batches[number];

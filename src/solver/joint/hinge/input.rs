@@ -105,7 +105,8 @@ impl Turning {
 
     /// The rotation in a sub-step in radians, with 30 fraction bits, for a spin with 32 fraction bits.
     pub(in super::super) fn ahead_of_wide(&self, spin: i64) -> i64 {
-        // 9 bits are the ratio of the formats of a speed and of the result.
+        // 32 bits are the fraction of `ahead`, 9 bits are its additional scale, and 2 bits convert 32 to 30 fraction
+        // bits.
         let wide = i128::from(spin) * i128::from(self.ahead.to_bits());
         saturate_wide(round_shift_wide(wide, 32 + 9 + 2))
     }

@@ -9,7 +9,7 @@ use crate::simd::{Ints, Lanes, VelocityW};
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// Changes the velocities by impulses `d` of at most 512 m/s.
+    /// Changes the velocities by impulses `d` along x and y, of at most 512 m/s each.
     #[inline(always)]
     pub(super) fn apply_at_point(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
         let [g_a, g_b] = &batch.g;

@@ -1,4 +1,4 @@
-//! Fills batches with hinges in the order of solving, and returns their impulses to the state.
+//! Copies hinges into batches in the order in which they are solved, and writes their impulses back to the joints.
 
 use alloc::vec::Vec;
 
@@ -27,7 +27,7 @@ impl HingeSet {
         blocked_extras.clear();
     }
 
-    /// Adds the input of a hinge, and returns its index.
+    /// Adds the input of a hinge, and returns the index of the input.
     pub(in super::super) fn push_input(
         &mut self,
         slot: u32,
@@ -47,7 +47,7 @@ impl HingeSet {
         count(inputs) - 1
     }
 
-    /// Adds batches for hinges that fit no colour.
+    /// Adds batches for the hinges that fit no colour. `indices` are indices of inputs.
     pub(in super::super) fn push_overflow(&mut self, indices: impl Iterator<Item = u32> + Clone) {
         let HingeSet { inputs, angles, overflow, .. } = self;
         for has_angle in [false, true] {
@@ -57,8 +57,8 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches for the hinges of a colour to the share of one thread. `is_alone` returns whether a body has only
-    /// one joint.
+    /// Adds batches for the hinges of one colour to the share of one thread. `indices` are indices of inputs.
+    /// `is_alone` returns whether a body has no joint except the hinge.
     pub(in super::super) fn push_colour(
         &mut self,
         part: &mut HingeShare,
@@ -75,7 +75,7 @@ impl HingeSet {
             let ordinary = indices.clone().filter(|index| !is_anchored(index) && !is_tuned(index));
             batches.push(inputs, angles, ordinary);
             anchored.push(inputs, angles, indices.clone().filter(is_anchored));
-            // All hinges of a batch have the same softness.
+            // Sorts the tuned hinges by softness, because all hinges of a batch must have the same softness.
             tuned.clear();
             tuned.extend(indices.filter(is_tuned));
             let softness = |&index: &u32| inputs[index as usize].softness.to_bits();
@@ -88,7 +88,7 @@ impl HingeSet {
         anchored.end_colour();
     }
 
-    /// Loads the impulses and angles of the joints again.
+    /// Copies the impulses and angles of the joints into the existing batches again.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.overflow.reload(joints);
         self.blocked.reload(joints);
@@ -174,7 +174,7 @@ impl Coloured<Hinges> {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds the bodies of the hinges. All hinges must be anchored.
+    /// Adds the body that each hinge moves to `all`. All hinges must be anchored.
     fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
             all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));
@@ -182,7 +182,7 @@ impl<const N: usize> Batches<Hinges, N> {
     }
 
     /// Adds batches of hinges. No two of `N` successive hinges may share a body that impulses change. All hinges must
-    /// have the same softness, and either all or none must have rows on the angle.
+    /// have the same softness, and either all or none of them must have rows on the angle.
     pub(super) fn push(
         &mut self,
         inputs: &[Input],
@@ -296,8 +296,8 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// A distance between centres with 52 fraction bits, clamped to 1024 m so that no sum overflows. Two arms reach at most
-/// 849 m.
+/// A component of the vector between the centres of mass, in metres with 52 fraction bits. The sums that compute the
+/// gap must stay below 2048 m, so the component is clamped to 1024 m: two arms add at most 849 m.
 fn widened(between: Fx) -> i64 {
     const FARTHEST: Fx = crate::fx!(1024);
     const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;

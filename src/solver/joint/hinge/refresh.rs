@@ -1,17 +1,19 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
-//! Lever ratios are rotated from their body's frame, `e = R e0`. Between two bodies that impulses move, both levers
-//! then reach to the middle of the gap, with `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`: impulses at one
-//! point conserve angular momentum.
+//! Lever ratios are rotated out of the frames of their bodies, `e = R e0`. If impulses move both bodies, each lever
+//! ratio is then extended to the middle of the gap: `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`. The
+//! impulses on A and B then act at one point, which conserves angular momentum.
 //!
-//! The products in `K` are computed exactly, in two parts of 32 bits, and then rounded:
+//! Each entry of `K` is rounded only once, to 46 fraction bits. The product `a e` is exact, as a high part and a low
+//! part of 32 bits:
 //!
 //! ```text
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! If `a e` were rounded to the 24 fraction bits of `e` first, `e'` would multiply the rounding error by up to 2^7. The
-//! determinant can be computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
+//! If `a e` were rounded to the 24 fraction bits of `e` first, `e'` would multiply the rounding error by up to 2^7.
+//! Entries with 46 fraction bits are so precise that the determinant can be computed as the difference
+//! `K11 K22 - K12^2`, in which large products cancel.
 
 use core::cell::Cell;
 
@@ -39,7 +41,7 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
-    /// The softness of the batch itself if it has one, otherwise the softness of ordinary or of anchored hinges.
+    /// The hinges' own softness if the batch is tuned, otherwise the default for ordinary or for anchored hinges.
     #[inline(always)]
     pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
         match batch.is_tuned {
@@ -109,7 +111,7 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// `R v` with 30 more fraction bits.
+/// `R v`, with 30 more fraction bits than `v`.
 #[inline(always)]
 fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -> [L::Wide; 2] {
     let [c, s, ..] = *quads;
@@ -126,8 +128,9 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
 /// Fraction bits of [`gap_factors`].
 pub(super) const FACTOR: u32 = 14;
 
-/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m: changes of the lever ratios per metre of the gap. 0 if impulses do not move
-/// one of the bodies, because angular momentum is not conserved anyway. Saturates for radii of gyration below 2^-18 m.
+/// Changes of the lever ratios per metre of the gap: `1 / (2 kA)` and `-1 / (2 kB)`, in 1/m. Both are 0 if impulses do
+/// not move one of the bodies, because angular momentum is then not conserved anyway. Saturates for radii of gyration
+/// below 2^-18 m.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {
         return [0; 2];
@@ -137,15 +140,15 @@ pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFra
     [a, -b]
 }
 
-/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Ratios that would be too long for `K` stay
-/// unchanged: beyond 87 radii of gyration angular momentum is not conserved.
+/// The lever ratio of one body, extended into the gap: `e + factor (-gap_y, gap_x)`. If a component would exceed 87,
+/// the ratio stays as it is, and the impulses then do not conserve angular momentum.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],
     [gap_x, gap_y]: [L::Int; 2],
     factors: &Ints<N>,
 ) -> [L::Int; 2] {
-    /// Largest component, so that the length is below [`super::input::LENGTH_MAX`].
+    /// Largest component of an extended ratio. The length is then below [`super::input::LENGTH_MAX`].
     const REACH_MAX: Ratio = Ratio::lit("87");
     const SHIFT: i32 = shift(Step::FRAC_NBITS + FACTOR - Ratio::FRAC_NBITS);
     let factor = L::load(factors);
@@ -157,8 +160,8 @@ fn reaching<L: Lanes<N>, const N: usize>(
     [L::select(beyond, e[0], x), L::select(beyond, e[1], y)]
 }
 
-/// The gap, rounded once. `gap` has 52 fraction bits and excludes `moved`, the displacement of B relative to A since
-/// the start of the tick.
+/// A component of the current gap, `gap + moved`, rounded once. `gap` has 52 fraction bits and uses the centres of mass
+/// at the start of the tick. `moved` is the displacement of B relative to A since then.
 #[inline(always)]
 fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
@@ -166,14 +169,14 @@ fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int
     L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved)).0
 }
 
-/// The negated velocity that closes a gap.
+/// The bias of a hinge: the negated velocity that closes the gap.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Int, softness: &Softness) -> L::Int {
     const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
 }
 
-/// A component `e` of a lever ratio, and `a e = high 2^32 + low`.
+/// A component `e` of a lever ratio, and its product with the mass fraction, `a e = high 2^32 + low`.
 struct Parts<L: Lanes<N>, const N: usize> {
     e: L::Int,
     high: L::Int,
@@ -188,7 +191,8 @@ impl<L: Lanes<N>, const N: usize> Parts<L, N> {
     }
 }
 
-/// `aA eA eA' + aB eB eB'`, an entry of `K - I`. `a` and `b` contain the products with the mass fractions.
+/// `aA eA eA' + aB eB eB'`, an entry of `K - I`. `a` and `b` contain `aA eA` and `aB eB`. `other_a` and `other_b`
+/// contain `eA'` and `eB'`.
 #[inline(always)]
 fn entry<L: Lanes<N>, const N: usize>(
     a: &Parts<L, N>,

@@ -80,7 +80,7 @@ pub(super) fn relative_velocity<L: Lanes<N>, const N: usize>(
     ]
 }
 
-/// `w` along an axis.
+/// `w` along one axis, before it is clamped.
 #[inline(always)]
 pub(super) fn wanted<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
@@ -125,7 +125,8 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     L::sub(new, old)
 }
 
-/// Lever ratios averaged over the predicted rotation: `e + across (-e_y, e_x) - along e`.
+/// Lever ratios averaged over the predicted rotation: `e + across (-e_y, e_x) - along e`, with the last two numbers of
+/// the body's quad.
 #[inline(always)]
 fn ratios_ahead<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
@@ -137,7 +138,8 @@ fn ratios_ahead<L: Lanes<N>, const N: usize>(
     [L::sub(x, L::narrow::<UNIT>(back_x)), L::sub(y, L::narrow::<UNIT>(back_y))]
 }
 
-/// Velocity along an axis. Lanes in which it does not fit count as faults.
+/// The relative velocity `vr` along one axis. Lanes in which it does not fit a [`Speed`](crate::math::Speed) saturate,
+/// and count as faults.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     linear: L::Int,

@@ -35,15 +35,17 @@ struct Setting {
 
 #[derive(Clone, Copy)]
 struct Sizes {
-    /// Length of the arms in radii of gyration.
+    /// Largest length of an arm, in radii of gyration.
     arm: Fx,
+    /// Largest component of a velocity or an impulse, in m/s.
     speed: Fx,
+    /// Largest component of a gap, in metres.
     gap: Fx,
 }
 
 /// Sizes that occur in games.
 const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
-/// Sizes at which clamps act.
+/// Sizes so large that some results are clamped.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
 /// Settings in which anchored hinges are as stiff as other hinges, so that batches can be compared with single hinges.
@@ -134,7 +136,8 @@ impl Setting {
             softness: Softness::RIGID,
             is_tuned: false,
         });
-        // Both levers are extended into the gap by `k` times the rounded factor.
+        // The oracle has arms that end in the gap. The batch extends lever ratios by a rounded factor instead, so each
+        // arm is extended by the gap times `k` times this factor.
         for ((end, gyration), factor) in ends.iter_mut().zip(gyrations).zip(gap_factors) {
             let share = crate::math::fx_mul(Fx::from_bits(i64::from(factor) << (32 - FACTOR)), gyration);
             let reach = Vec2::new(crate::math::fx_mul(gap.x, share), crate::math::fx_mul(gap.y, share));
@@ -261,8 +264,10 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
     assert!(faulty > 100, "{faulty} settings reach the clamps");
 }
 
-/// Rotated lever ratios differ by 2^-24 from ratios that are computed again. With arms of up to 16 radii of gyration,
-/// the anchors start at less than 350 m/s. One iteration may leave 128 units, 6.1e-5 m/s.
+/// The scalar block rotates the arm before it computes a lever ratio, whereas the batch rotates the ratio. Both ratios
+/// therefore differ by about 2^-24. The arms are at most 16 radii of gyration long, so the anchors approach at less
+/// than 350 m/s. Velocities may differ by 256 units (1.2e-4 m/s). A second iteration may still change impulses by 128
+/// units (6.1e-5 m/s).
 #[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);

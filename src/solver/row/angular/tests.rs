@@ -5,7 +5,8 @@ use crate::solver::body::SolverBody;
 use crate::solver::limits::IMPULSE_MAX;
 use crate::solver::softness::Softness;
 
-/// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`.
+/// One update leaves no relative angular velocity. It conserves angular momentum: `MA kA duA = -MB kB duB`, with masses
+/// `M`.
 #[test]
 fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
     let mut rng = Rng::new(7);

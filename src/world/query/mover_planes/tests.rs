@@ -16,7 +16,8 @@ fn plane(normal: Vec2<Unit>, separation: Fx) -> MoverPlane {
     }
 }
 
-/// Oracle: the nearest point is the target, its projection on one plane, or the intersection of two.
+/// Oracle: tries the target, its projections on the planes, and the intersections of all pairs of planes. Returns the
+/// nearest one that is at most `slack` behind any plane.
 fn nearest(target: Vec2<Fx>, planes: &[MoverPlane], slack: Fx) -> Option<Vec2<Fx>> {
     let height = |plane: &MoverPlane, x: Vec2<Fx>| plane.separation + plane.normal.widen().dot(x);
     let mut candidates = alloc::vec![target];
@@ -58,7 +59,8 @@ fn the_solved_translation_is_the_nearest_one_outside() {
         let found = solve_planes(target, &mut planes);
         let least = planes.iter().map(|plane| plane.height(found)).min().expect("planes");
         assert!(least > fx!(-0.0000001), "{least} {target:?} {planes:?}");
-        // The oracle's slack displaces the intersection of nearly parallel planes.
+        // The slack is small: a point behind one of two nearly parallel planes may be nearer to the target by many
+        // times the slack.
         let expected = nearest(target, &planes, fx!(0.00000001)).expect("the planes leave room");
         worst = worst.max(found.distance(target) - expected.distance(target));
         assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");

@@ -1,5 +1,4 @@
-// Steps one world on the page and an equal one in a worker. Bundlers remove the types without checking them; tsc checks
-// them.
+// Steps one world on the page and an equal one in a worker. Bundlers only remove the types; tsc checks them.
 import { play } from "./play.js";
 
 declare global {

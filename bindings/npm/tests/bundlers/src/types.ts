@@ -92,7 +92,7 @@ export function brief(file: Uint8Array): string {
     return brief.hash();
 }
 
-/** Bytes of the library are in buffers of their own, which other APIs require. */
+/** The library returns bytes in buffers of their own, which `postMessage`, `RTCDataChannel` and `Blob` require. */
 export function bytes(recording: Recording, match: Match, channel: RTCDataChannel): Blob {
     const floats = world.poses();
     postMessage(floats, "*", [floats.buffer]);

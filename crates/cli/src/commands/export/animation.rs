@@ -16,11 +16,12 @@ use crate::error::CommandError;
 const FRAME_RATE_MAX: u32 = 30;
 /// Default width in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
-/// Highest frame rate that most programs show for a GIF. Their shortest frame time is 2/100 s.
+/// Highest frame rate at which most programs show a GIF, in frames per second: they slow down frames shorter than 2/100
+/// s.
 const GIF_RATE_MAX: u32 = 50;
-/// Maximum number of ticks that are sampled to find a window. The last tick is sampled in addition.
+/// Maximum number of ticks before the last one that are sampled to find a window. The last tick is always sampled.
 const SAMPLES: u64 = 100;
-/// Number of sampled ticks for each sample picture. The palette is made from the sample pictures.
+/// One in this many sampled ticks is drawn as a sample picture, from which the palette is made.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Plays the replay twice. The first pass finds the window and the colours, and fails before anything is written.
@@ -95,8 +96,8 @@ struct Camera<'a, G: Game> {
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// Determines the size of all frames. The frames have the aspect ratio of the game's view. They differ from it if
-    /// the arguments set both width and height, or if a side would be outside of 64 to 16384 pixels.
+    /// Determines the size of all frames. Their aspect ratio is that of the game's view, unless the arguments set both
+    /// width and height, or a side would have fewer than 64 or more than 16384 pixels.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,

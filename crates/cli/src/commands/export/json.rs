@@ -23,7 +23,8 @@ pub(super) fn write<G: Game>(
     Ok(())
 }
 
-/// The tick comes first, so that the beginning of a long line shows which tick it is.
+/// A line of JSON with the tick, the state hash and the save. The tick comes first, so that the beginning of a long
+/// line shows it.
 pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
     let state = value::json(save).map_err(|error| CommandError::State { why: error.to_string() })?;
     Ok(format!("{{\"tick\":{tick},\"hash\":\"{hash}\",\"state\":{}}}", json_text(&state)))

@@ -232,8 +232,8 @@ fn setup<G: Game>(rules: (&str, u32), bytes: &[u8]) -> Setup {
     if rules != (G::RULES.name, G::RULES.version) {
         return Setup::Unknown;
     }
-    // Bytes that another version of the engine has encoded may decode to a wrong setup. Such a setup is recognised,
-    // because it encodes to other bytes.
+    // If another version of the engine has encoded the setup, the bytes may decode to a wrong setup. This is recognised
+    // by encoding the setup again, which gives other bytes.
     let decoded = codec::decode::<G::Setup>(bytes).ok().filter(|setup| codec::encode(setup) == bytes);
     decoded.and_then(|setup| fields(&setup).ok()).map_or(Setup::Unknown, Setup::Fields)
 }

@@ -13,27 +13,28 @@ use serde::{Deserialize, Serialize};
 use super::report::Report;
 use crate::console::json_text;
 
-/// Version of the cache. It is incremented when the meaning of an entry changes, or when the verdict for the same
-/// bytes, rules and semantics changes.
+/// Version of the cache, which is part of every key. Increment it if the meaning of an entry changes, or if this
+/// program gives another verdict than an earlier one for the same bytes, rules and semantics.
 const VERSION: u32 = 2;
 
-/// Maximum size of an entry in bytes. An entry with 256 claims is smaller.
+/// Maximum number of bytes that are read of an entry. An entry with the maximum number of claims (256) is smaller.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
 
-/// A folder with a file for each report. The name of the file is a hash of everything that the report depends on.
+/// A folder with a file for each report. The name of each file is a hash of everything that its report depends on.
 ///
-/// Processes may share the folder, also on several machines. An entry appears complete or not at all, and all its
-/// writers write the same bytes. A damaged entry counts as absent.
+/// Processes may share the folder, also on several machines. An entry is renamed into place when it is complete, so no
+/// process reads a part of it. If several processes write the same entry, they write the same bytes. A damaged entry
+/// counts as absent.
 pub(super) struct Cache {
     folder: PathBuf,
-    /// Hash of versions, rules and limits.
+    /// Hash of the versions, the rules and the limits, which is part of every key.
     context: Hash,
 }
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
     report: Report,
-    /// Hash of the key and the report, which detects damage and renaming.
+    /// Hash of the key and the report. It detects a damaged or renamed file.
     checksum: String,
 }
 
@@ -48,7 +49,7 @@ impl Cache {
         key(&self.context, bytes.as_bytes())
     }
 
-    /// The cached report of a key, if it is undamaged.
+    /// The cached report of a key. `None` if there is no entry, or if it is damaged.
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
         let (mut text, path) = (String::new(), self.path(key));
         // Only regular files are read: reading a pipe would block.
@@ -57,7 +58,8 @@ impl Cache {
         }
         File::open(path).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;
-        // The checksum covers the report. Damage that decodes to the same report is found by comparing the text.
+        // The checksum covers only the decoded report. The comparison of the text also finds damage that does not
+        // change the report, such as an added space.
         let is_whole = serde_json::to_string(&entry).ok()? == text;
         (is_whole && entry.checksum == checksum(key, &entry.report)).then_some(entry.report)
     }
@@ -89,7 +91,7 @@ pub(super) fn key(context: &Hash, bytes: &[u8; 32]) -> Hash {
 
 /// Hash of everything that a verdict depends on, except the file's bytes.
 pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
-    // Naming all fields makes this code fail to compile when a limit is added, so that the new limit is hashed.
+    // All fields are named, so that this code does not compile if a limit is added and not hashed.
     let Limits {
         file_bytes,
         setup_bytes,

@@ -21,7 +21,7 @@ use crate::files::{OneLine, Shown};
 
 pub(super) struct Display<'a, 'c> {
     json: bool,
-    /// Time limit of a file in seconds, for messages.
+    /// Time limit of a file in seconds, for messages. 0 if there is no limit.
     max_seconds: u64,
     console: &'a mut Console<'c>,
     shared: &'a Shared,
@@ -45,7 +45,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(())
     }
 
-    /// Prints a line for each file that takes long, and updates the progress line.
+    /// Prints a note about each file whose verification takes long (see `Watch`), and updates the progress line.
     fn pause(&mut self) -> Result<Pause, CommandError> {
         for work in self.shared.watch.overdue() {
             self.progress.aside(|| self.console.note(work));
@@ -54,7 +54,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(if self.interrupt.caught().is_some() { Pause::End } else { Pause::Continue })
     }
 
-    /// Prints the signal and the unfinished files, and ends the process without waiting for them.
+    /// Prints the signal and the unfinished files, and ends the process without waiting for these files.
     fn end(&mut self) {
         let Some((name, signal)) = self.interrupt.caught() else { return };
         self.totals.elapsed = self.clock.elapsed();
@@ -122,7 +122,8 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    /// Prints that a file has exceeded its time limit. The exit code is that of a file that cannot be read.
+    /// Prints that a file has exceeded its time limit. The command then exits with [`Exit::Trouble`], as for a file
+    /// that cannot be read.
     fn out_of_time(
         &mut self,
         path: &Path,

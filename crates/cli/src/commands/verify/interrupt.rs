@@ -6,20 +6,21 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{SigId, flag, low_level};
 
-/// Signal, its number in [`Interrupt`], and its name.
+/// The signals that are caught: for each, the number that the system uses, the number that [`Interrupt`] stores, and
+/// the name.
 const SIGNALS: [(i32, usize, &str); 2] = [(SIGINT, 1, "SIGINT"), (SIGTERM, 2, "SIGTERM")];
 
 /// Catches the signals while this value exists. A second signal ends the process at once, even while the output is
 /// blocked.
 pub(super) struct Interrupt {
-    /// Number of the signal that arrived, as in [`SIGNALS`]; 0 if none has arrived.
+    /// Number of the signal that arrived: the second value in [`SIGNALS`]. 0 if none has arrived.
     caught: Arc<AtomicUsize>,
     ids: Vec<SigId>,
 }
 
 impl Interrupt {
-    /// Begins to catch the signals. Does nothing without `owns_process`, because a program that uses the tool as a
-    /// library handles signals itself.
+    /// Begins to catch the signals. If `owns_process` is false, catches none, because a program that uses the tool as a
+    /// library handles its signals itself.
     pub(super) fn listen(owns_process: bool) -> Self {
         let (caught, again) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         let mut ids = Vec::new();
@@ -47,7 +48,7 @@ impl Drop for Interrupt {
     }
 }
 
-/// Ends the process as the signal would have done.
+/// Ends the process with the default action of the signal.
 pub(super) fn end_process(signal: i32) {
     let _ = low_level::emulate_default_handler(signal);
 }

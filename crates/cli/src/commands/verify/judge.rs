@@ -12,7 +12,7 @@ use crate::panics;
 /// State that all threads share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Set when no more results are needed.
+    /// Set when no more results are needed. Each thread then stops its file before the next tick.
     pub(super) stop: AtomicBool,
     /// Number of ticks played so far in all files together.
     pub(super) ticks: AtomicU64,
@@ -24,10 +24,10 @@ pub(super) enum Outcome {
     Report(Report),
     /// The file has exceeded its time limit.
     OutOfTime {
-        /// Number of ticks that were played.
+        /// Number of ticks that were played before.
         ticks: u64,
     },
-    /// No more results are needed.
+    /// The verification was stopped by [`Shared::stop`].
     Stopped,
 }
 
@@ -71,7 +71,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     }
 }
 
-/// Versions required by a file that this program cannot verify.
+/// The versions that a file requires, if its verdict is [`Verdict::Unverifiable`]. `None` for other verdicts.
 fn needs(bytes: &[u8], limits: &Limits, verdict: &Verdict) -> Option<Needs> {
     match verdict {
         Verdict::Unverifiable { why: Mismatch::Format { file, .. } } => {

@@ -11,8 +11,8 @@ use super::cache;
 use super::judge::{Outcome, Shared, judge};
 use super::report::Digests;
 
-/// Verifies files of the game `G`, on any thread. Returns the lines that `verify --json` prints without `--cache` and
-/// `--keys`.
+/// Verifies replays of the game `G`. Several threads may use a judge at the same time. The lines that it returns are
+/// those of `verify --json` without `--cache` and `--keys`.
 ///
 /// ```
 /// use lockstep2d::lockstep::Sandbox;
@@ -39,7 +39,7 @@ pub struct Judge<G: Game> {
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::Limits};
 /// use lockstep2d_cli::{Judge, Judged};
-/// // A worker counts what it has verified.
+/// // A file that is not a replay also gets a verdict.
 /// let judge = Judge::<Sandbox>::new(Limits::default());
 /// let Judged { verdict, line } = judge.judge("18.replay", b"not a replay").expect("it was not stopped");
 /// assert_eq!(verdict, "malformed");
@@ -60,7 +60,7 @@ impl<G: Game> Judge<G> {
         Judge { limits, shared: Shared::default(), game: PhantomData }
     }
 
-    /// The limits.
+    /// The limits for each file.
     #[must_use]
     pub fn limits(&self) -> &Limits {
         &self.limits
@@ -69,14 +69,15 @@ impl<G: Game> Judge<G> {
     /// Verifies the bytes of a file. If the game panics, the verdict is `panicked`. Returns `None` if [`Judge::stop`]
     /// has ended the verification.
     ///
-    /// If the file is larger than the size limit, `bytes` may end one byte after the limit. The verdict is the same, but
-    /// the line has the digest of these bytes: see [`Judge::judge_part`].
+    /// If the file is larger than the size limit, its bytes up to one byte after the limit are enough for the verdict.
+    /// The digest in the line is then that of the passed bytes. [`Judge::judge_part`] takes the digest of the whole
+    /// file.
     #[must_use]
     pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
         self.judge_part(name, bytes, blake3::hash(bytes).as_bytes())
     }
 
-    /// Like [`Judge::judge`], with `blake3` as the digest of the whole file.
+    /// Like [`Judge::judge`], but the digest in the line is `blake3`, which should be that of the whole file.
     #[must_use]
     pub fn judge_part(&self, name: &str, bytes: &[u8], blake3: &[u8; 32]) -> Option<Judged> {
         let path = Path::new(name);
@@ -91,8 +92,8 @@ impl<G: Game> Judge<G> {
         }
     }
 
-    /// Stops the verification of all files before their next tick. This includes files that are passed later. A stopped
-    /// file gets no verdict. A file that cannot be opened still gets a verdict.
+    /// Stops the verification of all files before their next tick, also of files that are passed later. A stopped file
+    /// gets no verdict. A file that cannot be opened as a replay still gets a verdict, because it has no tick to play.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
@@ -104,8 +105,8 @@ impl<G: Game> Judge<G> {
     }
 
     /// Hash of everything that the verdict on a file depends on, as 64 hexadecimal digits. `blake3` is the BLAKE3
-    /// digest of the file. The hash also covers the rules, the limits and versions. `verify --cache` names its entries
-    /// by this hash.
+    /// digest of the file. The hash also covers the rules, the limits, and the versions of the file format, the
+    /// semantics and the cache. `verify --cache` names its entries by this hash.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

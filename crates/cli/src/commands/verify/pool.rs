@@ -6,8 +6,8 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Maximum number of started tasks whose results are not yet shown. With [`Order::Tasks`], these results wait in
-/// memory.
+/// Maximum number of started tasks whose results are not yet shown. It bounds the number of results in memory: with
+/// [`Order::Tasks`], a result waits until the results of all earlier tasks are shown.
 const AHEAD_MAX: u64 = 1024;
 
 /// Longest wait for a result before [`Sink::pause`] is called.
@@ -29,7 +29,8 @@ pub(super) trait Sink<R> {
 
     fn result(&mut self, result: R) -> Result<(), Self::Error>;
 
-    /// Called repeatedly, also while no result arrives. If it returns [`Pause::End`], the run ends.
+    /// Called after each wait for a result, whether or not one has arrived. A wait takes at most [`MOMENT`]. If this
+    /// function returns [`Pause::End`], the run ends.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
     /// Called when [`Pause::End`] has ended the run and all waiting results were shown. Tasks may still be running.
@@ -42,8 +43,9 @@ pub(super) enum Pause {
     End,
 }
 
-/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses some
-/// threads, fewer are used. If it refuses all, the tasks run on this thread, and [`Sink::pause`] is not called.
+/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses to create
+/// some of the threads, fewer are used. If it refuses all, the tasks run on the thread of the caller, and
+/// [`Sink::pause`] is not called.
 ///
 /// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set so that running tasks
 /// end.
@@ -93,7 +95,7 @@ pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     })
 }
 
-/// Waits for the next task. Returns `None` if there are no more, or after `stop`.
+/// Waits for the next task. Returns `None` if there are no more, or if `stop` is set.
 fn next<T>(tasks: &Mutex<mpsc::Receiver<T>>, stop: &AtomicBool) -> Option<T> {
     let task = tasks.lock().ok()?.recv().ok()?;
     (!stop.load(Ordering::Relaxed)).then_some(task)
@@ -104,7 +106,7 @@ struct Run<I, R> {
     order: Order,
     begun: u64,
     shown: u64,
-    /// Results that wait for earlier results.
+    /// Results that wait until all earlier results are shown, by the numbers of their tasks.
     waiting: BTreeMap<u64, R>,
 }
 
@@ -149,7 +151,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
         }
     }
 
-    /// Starts one more task. Returns `false` if there is none.
+    /// Passes one more task to the threads. Returns `false` if there is none.
     fn begin(&mut self, tasks: &mpsc::Sender<(u64, T)>) -> bool {
         let Some(task) = self.tasks.next() else {
             return false;
@@ -166,7 +168,7 @@ mod tests {
 
     use super::*;
 
-    /// Work whose duration depends on the number.
+    /// Returns the square of a number, after a delay that depends on the number.
     fn work(number: u64) -> u64 {
         let mut value = number;
         for _ in 0..(number * 7919 % 13) * 2000 {
@@ -178,9 +180,9 @@ mod tests {
     #[derive(Default)]
     struct Shown {
         numbers: Vec<u64>,
-        /// Number of accepted results. The next result fails.
+        /// Number of results that are accepted. A further result is refused with an error.
         most: Option<usize>,
-        /// Number of results after which the run is to end.
+        /// Number of shown results after which [`Sink::pause`] ends the run.
         end_at: Option<usize>,
         is_ended: bool,
     }
@@ -299,7 +301,7 @@ mod tests {
         };
         let mut shown = EndWhenHeld(Shown::default(), &done);
         run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
-        // A task counts itself as done before it sends its result, so a few results may be missing.
+        // A task is counted as done before its result is sent, so the last result may be missing.
         assert!(
             shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
             "{}",

@@ -11,7 +11,7 @@ use super::totals::{Totals, rate};
 /// Highest redraw rate in Hz.
 const PER_SECOND: u8 = 10;
 
-/// The progress line. It has no total, because folders are listed during verification.
+/// The progress line. It does not show the total number of files, because folders are listed during verification.
 pub(super) struct Progress(Option<ProgressBar>);
 
 impl Progress {

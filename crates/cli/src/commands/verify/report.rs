@@ -20,27 +20,26 @@ pub(super) struct Report {
     pub(super) verdict: String,
     pub(super) ticks: u64,
     hash: Option<String>,
-    /// Number of bytes read from the file. At most one more than the limit.
+    /// Number of bytes read from the file: at most one more than the size limit.
     bytes: u64,
-    /// Further fields of the JSON line, which depend on the verdict.
+    /// Further fields of the JSON line. The verdict determines their names.
     details: Map<String, Value>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Digests {
-    /// Digest of the bytes that were judged.
+    /// BLAKE3 digest of the bytes that were read or, with [`Digests::of_part`], of the whole file.
     pub(super) blake3: blake3::Hash,
     pub(super) game: Option<GameDigest>,
 }
 
 impl Digests {
-    /// The digests of a file. A file that is damaged, has another format version or exceeds a limit has no digest of
-    /// its game.
+    /// The digests of a file. `game` is `None` if the file is damaged, has another format version or exceeds a limit.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
         Self::of_part(bytes, limits, blake3::hash(bytes))
     }
 
-    /// As [`Digests::of`], for a file of which `bytes` may be only the beginning. `blake3` is the digest of the whole
+    /// Like [`Digests::of`], but `bytes` may be only the beginning of the file. `blake3` is the digest of the whole
     /// file.
     pub(super) fn of_part(bytes: &[u8], limits: &Limits, blake3: blake3::Hash) -> Self {
         Digests { blake3, game: GameDigest::of_any(bytes, limits).ok() }
@@ -95,7 +94,8 @@ impl Report {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether other runs give the same report. A panic may be caused by the machine, or be fixed later.
+    /// Whether the report may be cached, because every other run gives the same one. After a panic this is not certain:
+    /// the machine may have caused it, or the game may be mended later.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }
@@ -131,12 +131,12 @@ impl Report {
     }
 }
 
-/// The line of a file that cannot be read, which has no verdict.
+/// The JSON line of a file that cannot be read. It contains no verdict.
 pub(super) fn unread(file: &Path, error: &io::Error) -> String {
     json_text(&json!({ "file": file.display().to_string(), "error": error.to_string() }))
 }
 
-/// The line of a file that has exceeded its time limit, which has no verdict.
+/// The JSON line of a file that has exceeded its time limit. It contains no verdict.
 pub(super) fn out_of_time(
     file: &Path,
     digests: &Digests,

@@ -6,9 +6,10 @@ use std::str::FromStr;
 
 /// One of `count` parts, numbered from 1.
 ///
-/// The part of a file depends only on a hash of its path relative to the argument. Processes may list a changing folder
-/// at different times. Even then, exactly one process takes each file that all of them find. A file keeps its part when
-/// other files are added. The parts differ in size: with about 1000 files per part, the standard deviation is about 30.
+/// The part of a file depends only on a hash of its path, relative to the folder that is an argument of the command.
+/// Other files do not change it. So if several processes list a changing folder at different times, exactly one of them
+/// takes each file that all of them find. The parts differ in size: with about 1000 files per part, the standard
+/// deviation is about 30 files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
     index: u32,
@@ -23,8 +24,8 @@ impl Shard {
     }
 }
 
-/// Number of the part of a path, from 0: the first eight bytes of the path's BLAKE3 hash, little-endian, modulo
-/// `count`. Components are joined by `/` on every system.
+/// Number of the part of a path, from 0: the first eight bytes of the path's BLAKE3 hash, as a little-endian number,
+/// modulo `count`. The hashed text has `/` between the components of the path on every system.
 fn part(below: &Path, count: u32) -> u64 {
     let mut hasher = blake3::Hasher::new();
     for (position, component) in below.components().enumerate() {
@@ -87,8 +88,8 @@ mod tests {
 
     #[test]
     fn the_rule_is_the_one_that_is_documented() {
-        // `printf a/b.replay | b3sum` prints the same hash.
         assert_eq!(part(Path::new("a/b.replay"), u32::MAX), part(Path::new("a//b.replay"), u32::MAX));
+        // `printf a/b.replay | b3sum` prints this hash.
         let hash = blake3::hash(b"a/b.replay");
         let first = hash.to_hex().as_str()[..16].to_string();
         let number = u64::from_str_radix(&first, 16).unwrap().swap_bytes();

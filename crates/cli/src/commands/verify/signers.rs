@@ -13,7 +13,7 @@ use crate::signature::{AllowedKeys, Check, GameDigest, path_beside};
 
 pub(super) struct Signers {
     keys: AllowedKeys,
-    /// Number of names that have to sign each file.
+    /// Number of different names that have to sign each file.
     required: usize,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Signed {
     signature: State,
     /// Names with a valid signature.
     signed_by: Vec<String>,
-    /// Names with a signature that is not valid.
+    /// Names with a signature that is not valid for this game.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forged: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,7 +43,7 @@ enum State {
     Malformed,
 }
 
-/// Maximum size of the file of public keys in bytes. Enough for 100 000 keys.
+/// Maximum size of the file of public keys in bytes. Enough for 100 000 keys with names of the maximum length.
 const KEYS_BYTES_MAX: u64 = 16 << 20;
 
 impl Signers {
@@ -58,8 +58,9 @@ impl Signers {
         Ok(Signers { keys, required })
     }
 
-    /// Checks the signatures beside a replay. `game` is `None` for a damaged replay, which cannot be signed. Fails for
-    /// the standard input, and for a signature file that cannot be read.
+    /// Checks the signature file beside a replay. `game` is the digest of the replay. If it is `None`, for example
+    /// because the replay is damaged, all signatures count as missing. Fails for the standard input, and if there is a
+    /// signature file that cannot be read.
     pub(super) fn check(&self, replay: &Path, game: Option<&GameDigest>) -> Result<Signed, CommandError> {
         if replay.as_os_str() == tasks::INPUT {
             return Err(CommandError::InputSignatures);
@@ -73,7 +74,7 @@ impl Signers {
             Err(error @ (CommandError::Line { .. } | CommandError::NoText { .. })) => {
                 return Ok(Signed::malformed(&error));
             }
-            // The result line names the replay, so the error names the signature file.
+            // The error is reported with the path of the replay, so its text names the signature file.
             Err(CommandError::Read { error, .. }) => {
                 let why = format!("{}: {error}", beside.display());
                 return Err(CommandError::read(replay)(io::Error::new(error.kind(), why)));

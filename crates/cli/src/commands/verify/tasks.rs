@@ -10,7 +10,7 @@ use crate::walk::Walk;
 /// The argument that stands for the standard input.
 pub(super) const INPUT: &str = "-";
 
-/// Files given by the arguments, and errors in finding files, in order.
+/// Iterator over the files that the arguments name, and over the errors in finding them, in the order of the arguments.
 pub(super) struct Tasks<'a> {
     arguments: std::slice::Iter<'a, PathBuf>,
     shard: Shard,
@@ -21,7 +21,7 @@ pub(super) struct Tasks<'a> {
 struct FolderTasks<'a> {
     path: &'a Path,
     walk: Walk,
-    /// Whether any file was found, in this shard or another one.
+    /// Whether a file or an error was found, in this shard or another one.
     is_any: bool,
 }
 
@@ -30,7 +30,8 @@ impl<'a> Tasks<'a> {
         Tasks { arguments: arguments.iter(), shard, folder: None, is_input_taken: false }
     }
 
-    /// Opens an argument. A file that is named directly may have any extension.
+    /// Returns the task of an argument that is a file, with any extension, if the file is in the shard. If the argument
+    /// is a folder, sets `self.folder` and returns `None`.
     fn open(&mut self, path: &'a Path) -> Option<Result<PathBuf, CommandError>> {
         if path.as_os_str() == INPUT {
             let again = std::mem::replace(&mut self.is_input_taken, true);

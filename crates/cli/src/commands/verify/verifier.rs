@@ -29,7 +29,7 @@ pub(super) struct Verified {
     pub(super) outcome: Outcome,
     pub(super) digests: Digests,
     pub(super) cached: bool,
-    /// Error in writing the report to the cache.
+    /// Error in writing the report to the cache. `None` if it was written, or was not to be written.
     pub(super) unkept: Option<io::Error>,
     /// Result of the signature check, which is never cached.
     pub(super) signed: Option<Signed>,

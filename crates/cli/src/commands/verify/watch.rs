@@ -11,9 +11,10 @@ use super::totals::rate;
 use crate::clock::Clock;
 use crate::files::Shown;
 
-/// Seconds until a file is reported for the first time. The interval then doubles up to [`NAMED_AGAIN_MAX`].
+/// Seconds until a file is reported for the first time. The time to the next report is then always equal to the elapsed
+/// time, up to [`NAMED_AGAIN_MAX`]: reports come after 5, 10, 20, 40, 80, 140 s and so on.
 const NAMED_AFTER: u64 = 5;
-/// Longest interval of reports, in seconds.
+/// Longest time between two reports of a file, in seconds.
 const NAMED_AGAIN_MAX: u64 = 60;
 
 /// Value of [`Work::ticks`] until the game is set up.
@@ -45,7 +46,7 @@ pub(super) struct AtWork<'a> {
 }
 
 impl Watch {
-    /// Adds a file. `time_max` is the longest time that the file may take.
+    /// Adds a file. `time_max` is the longest time that its verification may take.
     pub(super) fn begin(&self, path: PathBuf, time_max: Option<Duration>) -> AtWork<'_> {
         let number = self.begun.fetch_add(1, Ordering::Relaxed);
         let work = Arc::new(Work {
@@ -75,7 +76,7 @@ impl Watch {
 }
 
 impl Work {
-    /// Stores the number of ticks, which is known when the game has been set up.
+    /// Stores the number of ticks in the file, which is known when the game has been set up.
     pub(super) fn set_ticks(&self, ticks: u64) {
         self.ticks.store(ticks, Ordering::Relaxed);
     }

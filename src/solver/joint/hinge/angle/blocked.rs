@@ -11,7 +11,8 @@ use crate::math::{Ratio, Speed, Unit, round_shift};
 use crate::simd::{Ints, Lanes};
 
 impl AngleRows<1> {
-    /// `None` if no row is a spring or holds the angle, or if impulses turn neither body.
+    /// The row of the spring on the angle, or the row that holds the angle. `None` if there is neither, or if impulses
+    /// turn neither body.
     pub(in super::super) fn blocked_row(&self) -> Option<BlockedAngle> {
         let SpringRow { max, mass_scale, holds, .. } = &self.spring;
         (self.has_spring && max.0[0] > 0).then(|| BlockedAngle {

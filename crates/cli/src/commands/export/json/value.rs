@@ -1,4 +1,5 @@
-//! Any value as JSON. `serde_json` refuses integers of more than 64 bits, and maps whose keys are structs or tuples.
+//! Converts any value to JSON. `serde_json` alone would refuse integers of more than 64 bits, and maps whose keys are
+//! structs or tuples.
 
 use lockstep2d::inspect::{self, Field, fields};
 use serde::ser::{self, Serialize, Serializer};

@@ -24,7 +24,7 @@ impl Unit {
     }
 }
 
-/// Round numbers that enclose a range. Their step is 1, 2 or 5 times a power of ten.
+/// Equally spaced round numbers that enclose a range. The step between them is 1, 2 or 5 times a power of ten.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) step: f64,
@@ -36,8 +36,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis with 1 to `steps_max` steps. If `low` equals `high`, the range is extended to 0; if both are 0, it is
-    /// from 0 to 1.
+    /// An axis around the range from `low` to `high`, with 1 to `steps_max` steps. If `low` equals `high`, the range is
+    /// extended to 0; if both are 0, the range is 0 to 1.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
@@ -57,7 +57,8 @@ impl Axis {
         let powers = power_min..=30;
         let rounds = powers.flat_map(|power| [1, 2, 5].map(|digit| (digit, power)));
         let mut axes = rounds.map(|(digit, power)| {
-            // Parsing gives the nearest float. A product of powers of ten could differ from it.
+            // Parsing gives the float nearest to the decimal number. Computing it by multiplication could give a
+            // neighbouring float.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
             // The casts saturate if the step is far too small.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);

@@ -48,7 +48,8 @@ pub(super) fn write<G: Game>(
             curve.add(tick, value);
         }
     };
-    // Only differences of potential energy matter, so its lowest value is drawn as 0.
+    // Only differences of potential energy matter, so its curve and that of the total are shifted until the lowest
+    // potential energy is 0.
     if let [potential, _, total] = &mut panels[0].curves[..] {
         let lowest = potential.lowest();
         [potential, total].into_iter().for_each(|curve| curve.shift(-lowest));
