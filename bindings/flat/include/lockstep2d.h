@@ -74,8 +74,8 @@ typedef uint32_t ls2d_handle;
 #define LS2D_INTERNAL 11
 /* An earlier `LS2D_INTERNAL` has left the object unusable. The object can still be freed. */
 #define LS2D_BROKEN 12
-/* There are too many objects at a time, or the process has used up its supply of about 4 290 000 000 handles.
- * `ls2d_world_save_into` saves a world without a new handle. */
+/* There are already 2^20 objects, or the process has used all of about 4 290 000 000 handles. To save a world
+ * without a new handle, use `ls2d_world_save_into`. */
 #define LS2D_EXHAUSTED 13
 /* The bytes are not a valid encoding of the expected value. */
 #define LS2D_DECODE 14
@@ -140,11 +140,12 @@ typedef uint32_t ls2d_handle;
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* Handle of a body of a world. It is valid until the body is despawned, or until a state from before its spawn is
- * restored. After such a rollback, another body may get the same handle, so a table of sprites should also compare
- * `user_data`. The lowest 21 bits are the slot. The other bits are the generation, which counts the earlier bodies
- * in that slot: the first bodies have the handles 0, 1, 2 and so on. Handles of bodies are less than 2^53, so that
- * a JavaScript number holds them exactly. Only `LS2D_NO_ID`, which refers to nothing, is larger. */
+/* Handle of a body of a world. It is valid until the body is despawned, or until a rollback to a state from before
+ * the spawn of the body. After such a rollback, another body may get the same handle, so a table of sprites should
+ * also compare `user_data`. The lowest 21 bits are the slot. The other bits are the generation, which counts the
+ * earlier bodies in that slot: the first bodies have the handles 0, 1, 2 and so on. Handles of bodies are less
+ * than 2^53, so that a JavaScript number holds them exactly. Only `LS2D_NO_ID`, which refers to nothing, is
+ * larger. */
 typedef uint64_t ls2d_body;
 /* Handle of a shape of a world, encoded like `ls2d_body`. */
 typedef uint64_t ls2d_shape;
@@ -169,7 +170,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_BODY_LOCK_ROTATION 16
 /* Flag of a body: may fall asleep. */
 #define LS2D_BODY_MAY_SLEEP 32
-/* Flag of a body: its mass is given instead of computed from its shapes. */
+/* Flag of a body: the fields `mass`, `mass_centre` and `mass_gyration` give its mass. Without this flag, its mass
+ * is computed from its shapes. */
 #define LS2D_BODY_GIVEN_MASS 64
 /* `ls2d_body_def.continuous`: no continuous collision detection. */
 #define LS2D_SWEEP_OFF 0
@@ -219,7 +221,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_ENABLED 2
 /* Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel). */
 #define LS2D_JOINT_LIMIT 4
-/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; for the angle: motor). */
+/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel, and for the angle of a
+ * motor joint). */
 #define LS2D_JOINT_MOTOR 8
 /* Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
  * wheel). */
@@ -260,7 +263,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_REQUEST_SAVE 0
 /* Request: restore the copy of the state before `tick`. In a match, copies for later ticks are no longer needed. */
 #define LS2D_REQUEST_LOAD 1
-/* Request: simulate `tick` with the inputs. */
+/* Request: simulate `tick` with the inputs that come with this request. */
 #define LS2D_REQUEST_ADVANCE 2
 /* Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`, or, in a replay, the
  * hash of the current state to `ls2d_replay_check`. */
@@ -270,7 +273,8 @@ typedef uint64_t ls2d_joint;
 /* Event: the status is `value`, an `LS2D_MATCH_` constant. For `LS2D_MATCH_FINISHED`, `tick` is the number of
  * ticks. */
 #define LS2D_EVENT_STATUS 0
-/* Event: voters, seats, start or end of the match have changed. `value` counts the changes. */
+/* Event: voters, seats, start or end of the match have changed. `value` is the number of the new view, which each
+ * change increases by one. */
 #define LS2D_EVENT_VIEW 1
 /* Event: `peer` has `seat` from `tick` on. */
 #define LS2D_EVENT_SEATED 2
@@ -288,11 +292,11 @@ typedef uint64_t ls2d_joint;
 /* Event: after `tick` ticks, the state of `peer` has the hash `theirs`, and the state of this peer the hash
  * `ours`. */
 #define LS2D_EVENT_DESYNC 8
-/* Event: `peer` has issued two different inputs for `tick`. */
+/* Event: `peer` has issued two different inputs for `tick`. The input that arrived first counts. */
 #define LS2D_EVENT_CONFLICT 9
 /* Event: this peer is so far behind that the others may have dropped inputs that it lacks. It has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
-/* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
+/* Event: the contact refuses the request to join. `value` is the reason, an `LS2D_REFUSED_` constant. */
 #define LS2D_EVENT_REFUSED 11
 /* Event: the state after `tick` ticks was downloaded. `value` is the handle of its bytes, which the caller frees.
  * Restore this state before you fulfil the next request. */
@@ -311,7 +315,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_JOINING 0
 /* Status: follows the match. */
 #define LS2D_MATCH_WATCHING 1
-/* Status: has a seat, or is a dedicated server, and waits for the start. */
+/* Status: has a seat, or is a dedicated server, in a match that has not begun. */
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
@@ -349,7 +353,7 @@ typedef uint64_t ls2d_joint;
 /* Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`. */
 #define LS2D_CAPSULE 3
 /* Kind of a shape: a link of a chain, made by `ls2d_chain_links`. It is a line from `points[0]` to `points[1]`.
- * The far ends of the links before and after it are `points[2]` and `points[3]`. */
+ * The far end of the link before it is `points[2]`, and that of the link after it `points[3]`. */
 #define LS2D_LINK 4
 /* Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`. */
 #define LS2D_HULL 5
@@ -357,7 +361,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_RECTANGLE 6
 /* Flag of a shape: detects overlaps, and does not collide. */
 #define LS2D_SHAPE_SENSOR 1
-/* Flag of a shape: other shapes pass through it in the direction `one_way`. */
+/* Flag of a shape: other shapes pass through it if they move in the direction `one_way`. */
 #define LS2D_SHAPE_ONE_WAY 2
 /* Flag of a shape: has its own `restitution_threshold`. */
 #define LS2D_SHAPE_RESTITUTION_THRESHOLD 4
@@ -365,13 +369,14 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_AREA 8
 /* Flag of a shape: the area attracts bodies to its centre. */
 #define LS2D_SHAPE_ATTRACTION 16
-/* Flag of a shape: contact events include this shape. */
+/* Flag of a shape: its contacts are reported in contact events. It suffices that one of the two shapes has this
+ * flag. */
 #define LS2D_SHAPE_CONTACT_EVENTS 32
-/* Flag of a shape: hit events include this shape. */
+/* Flag of a shape: its hits are reported in hit events. It suffices that one of the two shapes has this flag. */
 #define LS2D_SHAPE_HIT_EVENTS 64
 /* Flag of a shape: sensors detect it. */
 #define LS2D_SHAPE_SENSOR_EVENTS 128
-/* Flag of a shape: a sensor that detects sensors, too. */
+/* Flag of a shape: a sensor that also detects other sensors. */
 #define LS2D_SHAPE_DETECT_SENSORS 256
 /* Flag of a link: it has a neighbour before `points[0]`. */
 #define LS2D_SHAPE_LINK_BEFORE 512
@@ -379,22 +384,24 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_AFTER 1024
 /* Flag of a link: solid from the right only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing, for the values of two shapes: the mean. If the shapes have different rules, the rule with the
- * larger number applies. */
+/* Rule for mixing the values of two shapes: the mean. If the shapes have different rules, the rule whose constant
+ * is larger applies. */
 #define LS2D_MIX_AVERAGE 0
-/* Rule of mixing: the square root of the product. */
+/* Rule for mixing the values of two shapes: the square root of the product. */
 #define LS2D_MIX_GEOMETRIC_MEAN 1
-/* Rule of mixing: the smaller value. */
+/* Rule for mixing the values of two shapes: the smaller value. */
 #define LS2D_MIX_MINIMUM 2
-/* Rule of mixing: the product. */
+/* Rule for mixing the values of two shapes: the product. */
 #define LS2D_MIX_PRODUCT 3
-/* Rule of mixing: the larger value. */
+/* Rule for mixing the values of two shapes: the larger value. */
 #define LS2D_MIX_MAXIMUM 4
-/* Attraction that is constant beyond `attraction_radius`. */
+/* `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is constant. */
 #define LS2D_FALLOFF_CONSTANT 0
-/* Attraction that is in inverse proportion to the distance beyond `attraction_radius`. */
+/* `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is in inverse proportion to the
+ * distance from the centre. */
 #define LS2D_FALLOFF_INVERSE 1
-/* Attraction that is in inverse proportion to the square of the distance beyond `attraction_radius`. */
+/* `ls2d_shape_def.attraction_falloff`: beyond `attraction_radius`, the attraction is in inverse proportion to the
+ * square of the distance from the centre. */
 #define LS2D_FALLOFF_INVERSE_SQUARE 2
 
 /* A point or a vector. */
@@ -427,44 +434,47 @@ typedef struct ls2d_config {
     uint32_t size;
     /* Ticks per second, 10 to 1000. */
     uint32_t tick_rate;
-    /* Gravity in m/s². */
+    /* Gravity in m/s², within ±100 000 on each axis. */
     ls2d_vec2 gravity;
-    /* Number of sub-steps of a tick. */
+    /* Number of sub-steps of a tick, 1 to 64. `tick_rate` times `sub_steps` is 60 to 4000. */
     uint32_t sub_steps;
-    /* Number of solver iterations of a sub-step. */
+    /* Number of solver iterations of a sub-step, 1 to 16. */
     uint32_t iterations;
     /* `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`. */
     uint32_t contact;
     /* Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
     uint32_t flags;
-    /* Stiffness of soft contacts in Hz; for Baumgarte contacts, share of the overlap corrected in each sub-step. */
+    /* Stiffness of soft contacts in Hz, 1 to 1000. For Baumgarte contacts, share of the overlap corrected in each
+     * sub-step, 0 to 1. */
     ls2d_fx contact_stiffness;
-    /* Damping ratio of soft contacts; for Baumgarte contacts, overlap in metres that is not corrected. */
+    /* Damping ratio of soft contacts, 0 to 100. For Baumgarte contacts, overlap in metres that is not corrected, 0
+     * to 1. */
     ls2d_fx contact_damping;
-    /* Largest speed in m/s with which contacts push shapes apart. */
+    /* Largest speed in m/s with which contacts push shapes apart, 0 to 400. */
     ls2d_fx contact_push_speed;
-    /* Stiffness of joints in Hz. */
+    /* Stiffness of joints in Hz, 1 to 1000. */
     ls2d_fx joint_hertz;
-    /* Damping ratio of joints. */
+    /* Damping ratio of joints, 0 to 100. */
     ls2d_fx joint_damping_ratio;
-    /* Approach speed in m/s below which shapes do not bounce. */
+    /* Approach speed in m/s below which shapes do not bounce, 0 to 400. */
     ls2d_fx restitution_threshold;
-    /* Largest speed of a body in m/s. */
+    /* Largest speed of a body in m/s, 1 to 400. Below 27 ticks per second, also at most 15 m per tick. */
     ls2d_fx speed_max;
-    /* Distance in metres within which shapes get contact points before they touch. The distance is larger for
-     * shapes that approach each other. */
+    /* Distance in metres within which shapes get contact points before they touch, 0.001 to 1. The distance is
+     * larger for shapes that approach each other. */
     ls2d_fx speculative_distance;
-    /* Largest margin in metres of the bounding boxes in the broad phase. */
+    /* Largest margin in metres of the bounding boxes in the broad phase, 0.001 to 10. */
     ls2d_fx fat_margin;
-    /* Lowest approach speed of a hit event in m/s. */
+    /* Lowest approach speed of a hit event in m/s, 0 to 400. */
     ls2d_fx hit_speed;
-    /* Largest number of bodies. */
+    /* Largest number of bodies, at most 2^20. */
     uint32_t body_limit;
-    /* Largest number of shapes. */
+    /* Largest number of shapes, at most 2^20. */
     uint32_t shape_limit;
-    /* Largest number of joints. */
+    /* Largest number of joints, at most 2^20. */
     uint32_t joint_limit;
-    /* Largest number of pairs of shapes with overlapping fat AABBs in a tick. Further pairs are left out. */
+    /* Largest number of pairs of shapes with overlapping fat AABBs in a tick, at most 2^20. A tick with more pairs
+     * ignores those of the shapes in the largest slots, and counts as a fault. */
     uint32_t pair_limit;
 } ls2d_config;
 
@@ -488,11 +498,11 @@ typedef struct ls2d_body_def {
     ls2d_vec2 velocity;
     /* Angular velocity in rad/s, counter-clockwise. */
     ls2d_fx angular_velocity;
-    /* Mass in kg. Read only with `LS2D_BODY_GIVEN_MASS`. */
+    /* Mass in kg, 1e-5 to 2^30. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_fx mass;
     /* Centre of mass in the body's frame, in metres. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_vec2 mass_centre;
-    /* Radius of gyration in metres. Read only with `LS2D_BODY_GIVEN_MASS`. */
+    /* Radius of gyration about the centre of mass in metres, 0.002 to 512. Read only with `LS2D_BODY_GIVEN_MASS`. */
     ls2d_fx mass_gyration;
     /* Decay rate of the velocity, per second. */
     ls2d_fx linear_damping;
@@ -504,7 +514,7 @@ typedef struct ls2d_body_def {
     ls2d_fx sleep_speed;
     /* A number that the game may choose freely. */
     uint64_t user_data;
-    /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros. All zeros for no name. */
+    /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, padded with zeros. All zeros mean no name. */
     uint8_t name[16];
 } ls2d_body_def;
 
@@ -568,7 +578,7 @@ typedef struct ls2d_explosion {
     ls2d_vec2 centre;
     /* Radius in metres within which the impulse is full. */
     ls2d_fx radius;
-    /* Distance in metres beyond the radius over which the impulse falls to 0. */
+    /* Width in metres of the ring outside of the radius in which the impulse falls to 0. */
     ls2d_fx falloff;
     /* Impulse in N s per metre of the width of a shape, as seen from the centre. */
     ls2d_fx impulse;
@@ -592,18 +602,18 @@ typedef struct ls2d_shape_def {
     ls2d_fx radius;
     /* Centre of the shape in the body's frame, in metres. */
     ls2d_vec2 offset;
-    /* Mass per area in kg/m². */
+    /* Mass per area in kg/m², 0 to 2^20. */
     ls2d_fx density;
-    /* Friction coefficient. */
+    /* Friction coefficient, 0 to 16. */
     ls2d_fx friction;
-    /* Fraction of the approach speed that a bounce returns. */
+    /* Fraction of the approach speed that a bounce returns, 0 to 1.5. */
     ls2d_fx restitution;
-    /* Approach speed in m/s below which the shape does not bounce. Read only with
+    /* Approach speed in m/s below which the shape does not bounce, 0 to 400. Read only with
      * `LS2D_SHAPE_RESTITUTION_THRESHOLD`. */
     ls2d_fx restitution_threshold;
-    /* Rolling resistance of a round shape, as a fraction of its radius. */
+    /* Rolling resistance of a round shape, as a fraction of its radius, 0 to 1. */
     ls2d_fx rolling_resistance;
-    /* Speed of the surface around the shape, clockwise, in m/s. */
+    /* Speed of the surface around the shape, clockwise, in m/s, within ±400. */
     ls2d_fx surface_speed;
     /* Categories that the shape belongs to, one bit each. */
     uint64_t category;
@@ -616,23 +626,27 @@ typedef struct ls2d_shape_def {
     uint32_t friction_mixing;
     /* `LS2D_MIX_AVERAGE` and so on, for restitution. */
     uint32_t restitution_mixing;
-    /* Direction in the body's frame in which other shapes pass through. Read only with `LS2D_SHAPE_ONE_WAY`. */
+    /* Direction in the body's frame in which other shapes pass through this one. Read only with
+     * `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
-    /* Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body. */
+    /* Acceleration in m/s² that the area gives to bodies in it, along the axes of the area's body, within ±10 000. */
     ls2d_vec2 area_acceleration;
-    /* Force in N per m² of the part of a body that is in the area, along the axes of the area's body. */
+    /* Force in N per m² of the part of a body that is in the area, along the axes of the area's body, within
+     * ±2^20. */
     ls2d_vec2 area_force;
-    /* Velocity of the medium relative to the area's body in m/s, along the axes of this body. */
+    /* Velocity of the medium relative to the area's body in m/s, along the axes of this body, within ±400. */
     ls2d_vec2 area_flow;
-    /* Rate per second at which the velocity of a body in the area approaches the velocity of the medium. */
+    /* Rate per second, 0 to 1000, at which the velocity of a body in the area approaches that of the medium. */
     ls2d_fx area_linear_drag;
-    /* Rate per second at which the angular velocity of a body in the area approaches that of the area's body. */
+    /* Rate per second, 0 to 1000, at which the angular velocity of a body in the area approaches that of the
+     * area's body. */
     ls2d_fx area_angular_drag;
-    /* Density of the medium in kg/m², for buoyancy. */
+    /* Density of the medium in kg/m², 0 to 2^20, for buoyancy. */
     ls2d_fx area_density;
-    /* Acceleration in m/s² towards the centre of the area, at `attraction_radius`. */
+    /* Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`. */
     ls2d_fx attraction_acceleration;
-    /* Distance in metres with full attraction. Nearer to the centre the attraction decreases linearly to 0. */
+    /* Distance from the centre in metres at which the acceleration is `attraction_acceleration`. Nearer to the
+     * centre, it decreases linearly to 0; farther away, `attraction_falloff` applies. */
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
@@ -651,9 +665,9 @@ typedef struct ls2d_joint_def {
     uint32_t kind;
     /* `LS2D_JOINT_` flags. */
     uint32_t flags;
-    /* Number of teeth of a gear's wheel on body A. */
+    /* Number of teeth of a gear's wheel on body A: 1 to 1000, or -1 to -1000 for a ring around the other wheel. */
     int32_t teeth_a;
-    /* Number of teeth of a gear's wheel on body B. */
+    /* Number of teeth of a gear's wheel on body B, in the same range. */
     int32_t teeth_b;
     /* Angle of the joint's frame on A, in the frame of body A. */
     ls2d_angle angle_a;
@@ -669,25 +683,26 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 anchor_a;
     /* Anchor in the frame of body B, in metres. */
     ls2d_vec2 anchor_b;
-    /* Lower limit: of the angle in rad (revolute), or of the translation or length in m. */
+    /* Lower limit of the angle in rad (revolute), of the translation in m (prismatic, wheel) or of the length in m
+     * (distance). */
     ls2d_fx limit_lower;
     /* Upper limit, in the unit of the lower one. */
     ls2d_fx limit_upper;
     /* Target speed of the motor: in rad/s (revolute, wheel, motor), or m/s (prismatic, distance). */
     ls2d_fx motor_speed;
-    /* Largest torque of the motor in N m, or largest force in N. */
+    /* Largest torque of the motor in N m (revolute, wheel, motor), or largest force in N (prismatic, distance). */
     ls2d_fx motor_max;
     /* Frequency of the spring in Hz. */
     ls2d_fx spring_hertz;
     /* Damping ratio of the spring. */
     ls2d_fx spring_damping_ratio;
-    /* Rest position of the spring: in rad (revolute), or m. */
+    /* Rest position of the spring, in rad (revolute) or in m (prismatic, distance, wheel). */
     ls2d_fx spring_target;
-    /* Smallest force of the spring in N. */
+    /* Smallest force of the spring in N, 0 or less. Positive forces push the anchors apart. */
     ls2d_fx spring_force_lower;
-    /* Largest force of the spring in N. */
+    /* Largest force of the spring in N, 0 or more. */
     ls2d_fx spring_force_upper;
-    /* Length of a rod or of the rope of a pulley in metres. */
+    /* Length in metres that a rod holds (distance), or of the rope (pulley). */
     ls2d_fx length;
     /* Stiffness in Hz of the rigid constraints of the joint. */
     ls2d_fx hertz;
@@ -731,13 +746,13 @@ typedef struct ls2d_query_filter {
     uint32_t size;
     /* Flags: `LS2D_QUERY_SENSORS` or 0. */
     uint32_t flags;
-    /* `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in. */
+    /* Treatment of shapes that a ray or a cast starts in: `LS2D_OVERLAP_RESIST` and so on. */
     uint32_t initial_overlap;
     /* Number of bodies in `except`, at most 8. */
     uint32_t except_count;
-    /* Categories that the query belongs to. */
+    /* Categories of the query: a shape is seen only if its `mask` has one of them. */
     uint64_t category;
-    /* Categories that the query sees. */
+    /* Categories of shapes that the query sees. */
     uint64_t mask;
     /* Bodies that the query does not see. */
     ls2d_body except[8];
@@ -817,9 +832,9 @@ typedef struct ls2d_mover {
     uint32_t size;
     /* Steepest slope that counts as ground, measured from the horizontal. */
     ls2d_angle slope_max;
-    /* Height in metres of steps that the character climbs without a jump. */
+    /* Height in metres of steps that the character climbs without a jump, 0 to 100. */
     ls2d_fx step_height;
-    /* Largest descent of the ground within a tick, in metres, that the character follows. */
+    /* Largest descent of the ground within a tick that the character follows, in metres, 0 to 100. */
     ls2d_fx snap_distance;
     /* Geometry of the character; other fields of the definition have no effect. */
     ls2d_shape_def shape;
@@ -913,7 +928,7 @@ typedef struct ls2d_joint_event {
     uint64_t broke;
 } ls2d_joint_event;
 
-/* Bounds on the cost of reading and playing a replay. `ls2d_limits_init` sets the defaults. */
+/* Upper limits on the size of a replay and on the cost of playing it. `ls2d_limits_init` sets the defaults. */
 typedef struct ls2d_limits {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -925,7 +940,7 @@ typedef struct ls2d_limits {
     uint32_t setup_bytes;
     /* Largest number of players. */
     uint32_t players;
-    /* Largest number of bytes of a block, which has the inputs between two checkpoints. */
+    /* Largest number of bytes of a block, the part of the file with the inputs between two checkpoints. */
     uint32_t block_bytes;
     /* Largest number of ticks between checkpoints. */
     uint32_t block_ticks;
@@ -939,7 +954,7 @@ typedef struct ls2d_limits {
     uint64_t total_work;
 } ls2d_limits;
 
-/* Result of verifying a replay. Any other verdict than `LS2D_MATCH` is a failure. */
+/* Result of verifying a replay. Every verdict except `LS2D_MATCH` means that the replay is not verified. */
 typedef struct ls2d_verdict {
     /* `LS2D_MATCH` and so on. */
     uint32_t kind;
@@ -960,17 +975,17 @@ typedef struct ls2d_match_config {
     uint32_t seats;
     /* Number of seats that this peer plays; 0 for a spectator or a dedicated server. */
     uint32_t own_seats;
-    /* Number of seats that have to be taken before the first tick. Seats of the host count. */
+    /* Number of seats that have to be taken before the first tick, including those of the host. */
     uint32_t start_with;
     /* Bytes of an input, 1 to 512. */
     uint32_t input_bytes;
-    /* Duration of a tick in microseconds. */
+    /* Duration of a tick in microseconds, 1000 to 1 000 000. */
     uint32_t tick_micros;
-    /* Number of ticks that may be played with guessed inputs; 0 is lockstep. */
+    /* Number of ticks that may be played with guessed inputs of other peers, 0 to 32; 0 means lockstep. */
     uint32_t guess;
-    /* Smallest delay of inputs in ticks. */
+    /* Smallest delay of this peer's own inputs in ticks. The delay follows the latency. */
     uint32_t delay_min;
-    /* Largest delay of inputs in ticks. */
+    /* Largest delay of this peer's own inputs in ticks, at most 60. */
     uint32_t delay_max;
     /* Interval in ticks at which states are saved. 0, the default, stands for the interval of a Rust `Peer`: 1
      * with guessed inputs; in lockstep, the largest divisor of `check_interval` up to 8, or 6 if `check_interval`
@@ -980,16 +995,16 @@ typedef struct ls2d_match_config {
      * the interval of a Rust `Peer`: the largest multiple of `save_interval` up to 10, or `save_interval` if it is
      * more than 10. */
     uint32_t check_interval;
-    /* Number of ticks that may be played beyond the last final tick. */
+    /* Number of ticks that may be played beyond the last final tick, at least 16. */
     uint32_t history;
-    /* Minimum number of final ticks whose inputs are kept. */
+    /* Minimum number of final ticks whose inputs are kept for peers that return, at least `history`. */
     uint32_t log_ticks;
-    /* Number of ticks between the agreement that a peer joins and its first tick, in addition to three round
-     * trips. */
+    /* When a peer joins, its first tick lies three round trips and this number of ticks after the agreement on its
+     * seat. */
     uint32_t seat_lead;
     /* A peer may get a seat if it lags by at most this many ticks. */
     uint32_t seat_within;
-    /* Random number of this peer, new for each process. */
+    /* Number that identifies this peer. Choose a new random number in each process. */
     uint32_t peer;
     /* Tag of the match: packets with another tag are ignored. */
     uint64_t match_tag;
@@ -1042,14 +1057,14 @@ uint32_t ls2d_api_version(void);
 uint32_t ls2d_semantics(void);
 
 /* Copies the text of the last failure or verdict on this thread, as UTF-8 without a final zero. If the buffer is
- * too short, the text is cut. `length` is the length of the whole text in bytes. `LS2D_NONE` is no failure, and
- * leaves the text unchanged. */
+ * too short, the text is cut. `length` is the length of the whole text in bytes. A call that returns `LS2D_NONE`
+ * has not failed, and leaves the text unchanged. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Every later use of its handle is an error. */
 ls2d_status ls2d_free(uint32_t handle);
 
-/* Number of objects that have not been freed, to find leaks. */
+/* Number of objects that have not been freed. Use it to find leaks. */
 size_t ls2d_object_count(void);
 
 /* Number of bytes of a bytes object. */
@@ -1071,10 +1086,10 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Copies the settings `from` to `config`, adapted to small boxes. The sub-steps and the contact stiffness are such
- * that a stack of 8 boxes of `size` metres sinks by less than 2.5 % of a box, with at most 64 sub-steps per tick
- * and 4000 per second. The speculative distance is reduced to a fiftieth of `size`, but not below 1 mm. Set
- * gravity and the tick rate before this call. */
+/* Copies the settings `from` to `config`, adapted to small boxes. Raises the number of sub-steps (to at most 64
+ * per tick and 4000 per second) and the contact stiffness, so that a stack of 8 boxes of `size` metres sinks by
+ * less than 2.5 % of `size`. Reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Set
+ * gravity and the tick rate in `from` before this call. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1100,8 +1115,8 @@ ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash)
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of results that the solver has clamped to their range since the world was made, plus one for every tick
- * with more pairs than `pair_limit`. Limiting a body to the largest speed does not count. */
+/* Number of faults since the world was made: results of the solver that were clamped to the range of their number
+ * format, and ticks with more pairs than `pair_limit`. Limiting a body to the largest speed does not count. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */
@@ -1120,7 +1135,8 @@ ls2d_status ls2d_world_random_below(uint32_t world, uint32_t bound, uint32_t *nu
 /* Draws a uniform number from `low` to below `high` from the world's generator. */
 ls2d_status ls2d_world_random_range(uint32_t world, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
-/* Rebuilds the caches of a world. Its hash does not change. There are no events until the next tick. */
+/* Rebuilds the caches of a world from its state. The hash of the world does not change. There are no events until
+ * the next tick. */
 ls2d_status ls2d_world_clear_scratch(uint32_t world);
 
 /* ---- Definitions ---- */
@@ -1157,19 +1173,21 @@ ls2d_status ls2d_commands_count(uint32_t commands, size_t *count);
 /* Encodes a list of commands as bytes. */
 ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
 
-/* Replaces the contents of a list of commands by an encoded list, which may come from any source. */
+/* Replaces the contents of a list of commands by the commands in `data`, an encoded list. `data` may come from an
+ * untrusted source. */
 ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
 
-/* Executes a list of commands in order. Skips commands that the world refuses, and writes their number to
- * `refused`, unless this pointer is null. */
+/* Executes a list of commands in order. Skips commands that the world refuses. Writes the number of skipped
+ * commands to `refused`, unless this pointer is null. */
 ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
 
 /* Adds a body with its shapes. Writes the body's handle to `id`, unless `id` is null or the target is a list. */
 ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
 
-/* Adds a body at each pose, all with one definition. If the world refuses one of the bodies, it adds none of them.
- * A recording stores the definition only once. The fields `body` and `flags` of the poses are not read. Writes the
- * handles of the bodies to `ids`, unless `ids` is null or the target is a list. */
+/* Adds a body at each of the `poses`, all with the definition `body` and the same shapes. If the world refuses one
+ * of the bodies, it adds none of them. A recording stores the definition only once. The fields `body` and `flags`
+ * of the poses are not read. Writes the handles of the bodies to `ids`, unless `ids` is null or the target is a
+ * list. */
 ls2d_status ls2d_spawn_each(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, const ls2d_pose *poses, size_t pose_count, ls2d_body *ids, size_t capacity);
 
 /* Removes a body with its shapes and joints. */
@@ -1187,10 +1205,11 @@ ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_d
 /* Adds a joint. Writes the joint's handle to `id`, unless `id` is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
 
-/* Adds a joint between each pair of bodies, all with one definition. If the world refuses one of the joints, it
- * adds none of them. A recording stores the definition only once. `ends` contains body A and body B of the first
- * joint, then those of the second joint, and so on; `end_count` is the number of bodies. Writes the handles of the
- * joints to `ids`, unless `ids` is null or the target is a list. */
+/* Adds a joint between each pair of bodies in `ends`, all with the definition `joint`, whose own bodies are
+ * ignored. If the world refuses one of the joints, it adds none of them. A recording stores the definition only
+ * once. `ends` contains body A and body B of the first joint, then those of the second joint, and so on;
+ * `end_count` is the number of bodies. Writes the handles of the joints to `ids`, unless `ids` is null or the
+ * target is a list. */
 ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
@@ -1202,7 +1221,7 @@ ls2d_status ls2d_set_joint(uint32_t target, ls2d_joint joint, const ls2d_joint_d
 /* Enables a joint. */
 ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
 
-/* Disables a joint, which stays in the world. */
+/* Disables a joint: it stays in the world and keeps its handle, but has no effect. */
 ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
 
 /* Applies a force in N to a body during the next tick, at a point of the world in metres. */
@@ -1211,10 +1230,10 @@ ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, l
 /* Applies a torque in N m to a body during the next tick. */
 ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
 
-/* Applies an impulse in N s to a body at a point of the world in metres. */
+/* Applies an impulse in N s to a body at a point of the world in metres: changes the velocity at once. */
 ls2d_status ls2d_apply_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse_x, ls2d_fx impulse_y, ls2d_fx x, ls2d_fx y);
 
-/* Applies an angular impulse in N m s to a body. */
+/* Applies an angular impulse in N m s to a body: changes the angular velocity at once. */
 ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse);
 
 /* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */
@@ -1223,16 +1242,17 @@ ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_f
 /* Sets the position of a body's origin in metres, and its angle. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Moves a kinematic body during the next tick, until its origin is at a position in metres and it has an angle.
- * After this tick its velocity is 0. Other bodies are refused with `LS2D_WRONG_KIND`. `LS2D_SPEED` if the body
- * cannot reach the pose in one tick at the world's `speed_max`: use `ls2d_set_transform` for such a distance. */
+/* Moves a kinematic body during the next tick, so that its origin ends at (`x`, `y`) in metres with the rotation
+ * `angle`. After this tick its velocity is 0. The result is `LS2D_WRONG_KIND` for a body that is not kinematic,
+ * and `LS2D_SPEED` if the body cannot reach the pose in one tick at the world's `speed_max`: use
+ * `ls2d_set_transform` for such a distance. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
 /* Sets all settings of a body: damping, gravity scale, locks, continuous collision detection, sleep. The other
  * fields of `def` have no effect. */
 ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
-/* Changes the kind of a body. */
+/* Changes the kind of a body. A body that becomes fixed stops. */
 ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
 
 /* Sets the mass of a body. If `def` has `LS2D_BODY_GIVEN_MASS`, its three mass fields are used, otherwise the mass
@@ -1245,30 +1265,30 @@ ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_da
 /* Sets the name of a body. A length of 0 removes the name. */
 ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
 
-/* Lets a body take part in the simulation. */
+/* Enables a body: it takes part in the simulation again. */
 ls2d_status ls2d_enable(uint32_t target, ls2d_body body);
 
-/* Takes a body out of the simulation. */
+/* Disables a body: it keeps its pose and velocity, collides with nothing, and queries do not find it. */
 ls2d_status ls2d_disable(uint32_t target, ls2d_body body);
 
 /* Wakes a body. */
 ls2d_status ls2d_wake(uint32_t target, ls2d_body body);
 
-/* Puts a dynamic body to sleep, with the dynamic bodies that contacts and joints connect it to. */
+/* Puts a dynamic body to sleep, together with the dynamic bodies that are connected to it by contacts and joints. */
 ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 
 /* Sets the gravity in m/s². */
 ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
 
-/* Replaces the settings of a world. If a limit differs from the limit in the world, all settings are refused. A
- * recording also refuses a different tick rate. */
+/* Replaces the settings of a world. A limit, such as `body_limit`, must be equal to that of the world; otherwise
+ * the result is `LS2D_FIXED_SETTING`, and no setting changes. A recording also refuses a different tick rate. */
 ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
 
 /* Applies the impulses of an explosion to dynamic bodies, away from its centre, and wakes these bodies. */
 ls2d_status ls2d_explode(uint32_t target, const ls2d_explosion *explosion);
 
-/* Sets the defaults of an explosion: radius and falloff of 1 m, all categories. The centre is a point of the world
- * in metres. `impulse` is in N s per metre of the width of a shape. */
+/* Sets the defaults of an explosion: radius and falloff of 1 m, acting on shapes of all categories. The centre is
+ * a point of the world in metres. `impulse` is in N s per metre of the width of a shape. */
 ls2d_status ls2d_explosion_init(ls2d_fx x, ls2d_fx y, ls2d_fx impulse, ls2d_explosion *explosion);
 
 /* ---- Contents of a world ---- */
@@ -1318,9 +1338,10 @@ ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 /* Force in N that a joint exerted on body B in the last sub-step, and torque in N m about B's anchor. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Copies the definition of a joint, with anchors and angles for the current poses of its bodies. Both anchors are
- * at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction `axis` in the
- * world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no position error. */
+/* Copies the definition of a joint, and sets its anchors and angles for the current poses of its bodies: both
+ * anchors are at the point `anchor` of the world, in metres. The x axes of the joint's frames have the direction
+ * `axis` in the world; a zero vector stands for the x axis. A gear, rack or pulley is adapted so that it has no
+ * position error. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
@@ -1350,7 +1371,7 @@ ls2d_status ls2d_events_sensor_begin(uint32_t world, ls2d_sensor_event *events, 
 /* Shapes that ceased to overlap a sensor, sorted by `fraction`. */
 ls2d_status ls2d_events_sensor_end(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
 
-/* Joints whose force or torque has exceeded a threshold, in slot order. */
+/* Joints whose force or torque exceeded its threshold in the last sub-step of the tick, in slot order. */
 ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t capacity, size_t *count);
 
 /* ---- Queries ---- */
@@ -1381,7 +1402,8 @@ ls2d_status ls2d_overlap_box(uint32_t world, const ls2d_aabb *area, const ls2d_q
 /* Shapes that contain a point, in slot order. */
 ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
 
-/* The shape nearest to a point of the world in metres. `LS2D_NONE` if no shape is within `within` metres. */
+/* The shape nearest to the point (`x`, `y`) of the world, in metres. `LS2D_NONE` if no shape is at most `within`
+ * metres away. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
 /* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one of the shapes is disabled or
@@ -1399,7 +1421,8 @@ ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state)
 
 /* Moves a character for one tick at its velocity among the shapes that a filter accepts. The game adds gravity to
  * the velocity. `from` and `state` may point to the same struct. Writes the new state to `state`, and the surfaces
- * that the character meets to `met`, in order. If `met` is too short, the state is written nevertheless. */
+ * to `met`, in the order in which the character meets them. If `met` is too short, the state is written
+ * nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
@@ -1419,7 +1442,7 @@ ls2d_status ls2d_snapshot_hash(uint32_t snapshot, ls2d_hash *hash);
 /* Encodes a world as bytes. */
 ls2d_status ls2d_world_encode(uint32_t world, uint32_t *bytes);
 
-/* Makes a world from bytes, which may come from any source. */
+/* Makes a world from encoded bytes. The bytes may come from an untrusted source. */
 ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world);
 
 /* ---- Replays of worlds ---- */
@@ -1428,8 +1451,8 @@ ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world)
  * malicious file can take hours to verify: a server should set narrower limits. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
-/* Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
- * `config` stands for the default settings. */
+/* Creates a world, sets it up with the list `commands`, and starts recording it, with a checkpoint every
+ * `interval` ticks. A null `config` stands for the default settings. */
 ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
 
 /* Executes and empties a list of commands, and advances the recorded world by one tick. Skips commands that the
@@ -1445,15 +1468,15 @@ ls2d_status ls2d_recording_take(uint32_t recording, uint32_t *bytes);
 /* Ends a recording, and returns the remaining bytes. */
 ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
 
-/* Verifies a replay of a world, which may come from any source. A null `limits` stands for the default limits.
- * `ls2d_last_error` returns the verdict in words. */
+/* Verifies a replay of a world. The replay may come from an untrusted source. A null `limits` stands for the
+ * default limits. `ls2d_last_error` returns the verdict in words. */
 ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limits *limits, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of worlds ---- */
 
-/* Opens a replay of a world, which may come from any source, to go to any of its ticks. Tick t is the state after
- * t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its verdict is written,
- * and the result is `LS2D_RECORD`. Other failures write no verdict. */
+/* Opens a replay of a world for seeking to any of its ticks. The replay may come from an untrusted source. Tick t
+ * is the state after t ticks. A null `limits` stands for the default limits. If the replay cannot be played, its
+ * verdict is written, and the result is `LS2D_RECORD`. Other failures write no verdict. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
 
 /* The current tick, and the number of ticks. Each pointer may be null. */
@@ -1480,19 +1503,21 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
  * `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
-/* Records the final inputs of the next tick, those of all players in order. `absent` has a bit for each absent
- * player, whose input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
- * after this tick. */
+/* Records the inputs of the next tick, which cannot be changed later: `input_bytes` bytes for each player, in the
+ * order of the players. `absent` has a bit for each absent player; the input of such a player has to be zeros.
+ * Writes 1 to `due`, unless this pointer is null, if the caller then has to pass the hash of the state after this
+ * tick to `ls2d_recorder_checkpoint`; otherwise 0. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
-/* Passes the hash of the state after the last recorded tick. The call has no effect if no checkpoint is due. */
+/* Passes the hash of the state after the last recorded tick, for the checkpoint that `ls2d_recorder_record` has
+ * announced as due. The call has no effect if no checkpoint is due. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 
 /* Returns the bytes finished since the last call, which the caller appends to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
 /* Adds a result of the game, such as a score: a name of 1 to 64 bytes of UTF-8, and a number. A replay has at most
- * 256 results with different names. The results can be read without playing the replay. */
+ * 256 results, and their names must differ. The results can be read without playing the replay. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
 /* Ends a replay with the hash of the last state, and returns the remaining bytes. */
@@ -1500,11 +1525,12 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
 
 /* ---- Replays of games with rules of their own ---- */
 
-/* Opens a replay of a game with its own rules, which may come from any source. If the replay cannot be played, its
- * verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no verdict. */
+/* Opens a replay of a game with its own rules. The replay may come from an untrusted source. If the replay cannot
+ * be played, its verdict is written, the handle is 0, and the result is `LS2D_RECORD`. Other failures write no
+ * verdict. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as a bytes object, and numbers that describe the replay. All pointers except `rules` may be
+/* Name of the rules as a bytes object, and numbers that describe the replay. Each pointer except `rules` may be
  * null. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
@@ -1515,8 +1541,8 @@ ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
  * their names, and are verified only if the verdict is `LS2D_MATCH`. `LS2D_NONE` if there are no more results. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
-/* The inputs of all players for the next tick, and a bit for each absent player unless `absent` is null.
- * `LS2D_NONE` at the end. */
+/* Writes the inputs of all players for the next tick to `inputs`, and, unless `absent` is null, a bit for each
+ * absent player to `absent`. Returns `LS2D_NONE` at the end. */
 ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
 /* Compares the hash of the game's state with the file. Call it before the first tick and after each tick, or,
@@ -1536,13 +1562,14 @@ ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_ver
  * to this state. Before the first request, the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
-/* The next request of a seek: save, load and advance as in a match, and `LS2D_REQUEST_CHECKSUM`, which
- * `ls2d_replay_check` answers with the hash of the current state. `LS2D_NONE` when the tick of `ls2d_replay_seek`
- * is reached. `LS2D_RECORD` if the game has diverged from the file at or before this tick. */
+/* The next request of a seek. Save, load and advance are fulfilled as in a match. To fulfil
+ * `LS2D_REQUEST_CHECKSUM`, pass the hash of the current state to `ls2d_replay_check`. Returns `LS2D_NONE` when the
+ * tick of `ls2d_replay_seek` is reached, and `LS2D_RECORD` if the game has diverged from the file at or before
+ * this tick. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
-/* Sets the interval in ticks at which seeking saves the state. The default is 60, or a 256th of the replay if that
- * is more. */
+/* Sets the interval in ticks at which seeking saves the state. The default is 60 ticks, or a 256th of the ticks of
+ * the replay if that is more. */
 ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
@@ -1685,16 +1712,16 @@ ls2d_fx ls2d_angle_cos(ls2d_angle angle);
 /* Angle of a vector from the x axis; 0 for the zero vector. */
 ls2d_angle ls2d_angle_of(ls2d_fx x, ls2d_fx y);
 
-/* The angle of a number of degrees. */
+/* Converts a number of degrees to an angle. */
 ls2d_angle ls2d_angle_from_degrees(ls2d_fx degrees);
 
-/* The angle of a number of radians. */
+/* Converts a number of radians to an angle. */
 ls2d_angle ls2d_angle_from_radians(ls2d_fx radians);
 
-/* Degrees of an angle, above -180 and up to 180. */
+/* Converts an angle to degrees, above -180 and up to 180. */
 ls2d_fx ls2d_angle_to_degrees(ls2d_angle angle);
 
-/* Radians of an angle, above -pi and up to pi. */
+/* Converts an angle to radians, above -pi and up to pi. */
 ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 
 /* Makes a random number generator, which the game keeps as part of its state. */
