@@ -212,7 +212,8 @@ impl CheckOptions {
         self
     }
 
-    /// Sets the interval of the expensive operations in ticks, for longer logs.
+    /// Sets [`CheckOptions::every`], the interval in ticks at which the state is reloaded, rolled back or loses its caches.
+    /// A larger interval makes the check of a long log faster.
     #[must_use]
     pub fn every(self, ticks: u64) -> Self {
         CheckOptions { every: ticks.max(1), ..self }

@@ -174,7 +174,8 @@ impl<G: Game> Memory<G> {
         // Upper bound of the length of the envelope, the name of the rules (at most 64 bytes) and all fields of fixed
         // length.
         const FIXED: usize = 1024;
-        // For each tick: its number, hash, and the number and length of its save.
+        // For each tick: 8 + 16 bytes in the history (its number and hash), and 8 + 8 bytes in the list of saves (its
+        // number again, and the length of its save).
         let history = 40 * self.history.iter().count();
         let phases: usize = self.phases.iter().map(|(_, phases)| phases.bytes()).sum();
         (FIXED + replay.len() + history + phases) as u64 + 17 * u64::from(players)

@@ -229,7 +229,7 @@ impl Endpoint {
     }
 
     /// Requests to join through a contact at the next [`update`](Endpoint::update). Discards a session and its events.
-    /// The new session has another incarnation, but the same key, role, delay bounds and number of guessed ticks.
+    /// After a session or a refusal, the new session has another incarnation, but the same key, role, delay bounds and number of guessed ticks.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         self.events.clear();
@@ -237,9 +237,13 @@ impl Endpoint {
         (self.routes, self.contacts, self.guests) = Default::default();
         // Each attempt has another nonce, which tells the contact to begin a new handshake as well.
         self.attempts = self.attempts.wrapping_add(1);
+        let was_refused = self.attempts > 1 && matches!(self.phase, Phase::Refused);
         if let Phase::InMatch(session) = &self.phase {
             (self.role, self.config) = (session.role, session.config.clone());
-            // A new incarnation, because other peers have rows and inputs of the session that is discarded.
+        }
+        // A new incarnation: other peers have rows and inputs of the session that is discarded, or the contact has
+        // refused this peer because another peer has its incarnation.
+        if was_refused || self.session().is_some() {
             let [a, b, c, d, ..] = self.secret.hash(&self.attempts.to_le_bytes()).to_le_bytes();
             self.me = PeerId(u32::from_le_bytes([a, b, c, d]));
         }

@@ -144,8 +144,8 @@ fn every_backend_divides_as_plain_integers_do() {
     let mut rng = Rng::new(2);
     for round in 0..200_000u32 {
         let divisors = core::array::from_fn(|lane| match lane {
-            // Lanes 0 to 3: powers of two, and the largest divisors `d` for which `2^60 / d` is at least a given whole
-            // number; each of them also plus or minus one.
+            // Lanes 0 and 1: powers of two. Lanes 2 and 3: the largest `d` for which `2^60 / d` is at least `n`, for a
+            // random `n`. To each of them, -1, 0 or 1 is added.
             0 | 1 => (1i64 << (round % 47).max(1)) + i64::from(rng.below(3)) - 1,
             2 | 3 => (1i64 << 60) / (i64::from(rng.below(1 << 30)) + 1) + i64::from(rng.below(3)) - 1,
             _ => i64::from(rng.next_u32()) << 14 >> rng.below(46),

@@ -288,6 +288,10 @@ fn an_incarnation_of_somebody_else_is_refused() {
     net.run(5 * S);
     let refused = JoinEvent::Refused { reason: RefusalReason::Taken, offer: vec![1, 2, 3] };
     assert_eq!(net.nodes[index].events.first(), Some(&refused));
+    // The next request has another incarnation.
+    net.nodes[index].endpoint.ask(address(1));
+    net.run(15 * S);
+    net.assert_all_play();
 }
 
 #[test]

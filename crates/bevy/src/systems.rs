@@ -69,8 +69,8 @@ pub(crate) fn write_views<G: LockstepGame>(
     // The game may have despawned a view, or removed its component.
     views.retain(|view| all.get(view.entity).is_ok_and(|(_, shown)| shown.body() == view.body));
     let is_new_game = views.begin_game(lockstep.number());
-    // Entities that the game has prepared as views. They are not in the table `views` yet, except views of a former
-    // game into which the component was inserted again for the new game.
+    // Entities that the game has prepared as views. Most are not in the table `views` yet. An entity that was a view in
+    // the former game is still in the table; it counts as prepared if its `BodyView` was inserted again for the new game.
     let is_prepared = |(entity, view): &(Entity, Ref<BodyView>)| {
         let is_inserted_again = view.is_changed() && !view.is_added();
         views.entity(view.body()) != Some(*entity) || (is_new_game && is_inserted_again)

@@ -151,7 +151,8 @@ fn scaled(value: Speed, factor: u32, divisor: u32, max: Speed) -> Speed {
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-max, max)
 }
 
-/// Whether bodies at rest may move with the new settings.
+/// Whether the new settings require that all bodies wake: they could set bodies at rest in motion, or they turn sleeping
+/// off.
 fn is_disturbed(old: &Config, new: &Config) -> bool {
     // Destructures without `..`, so that a new setting causes a compile error until it is considered here.
     let Config {

@@ -105,7 +105,8 @@ impl<'a> Walk<'a> {
         if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
             let rate = i64::from(self.world.state.config.tick_rate);
             velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
-            // At the landing, the velocity of such a body was unknown.
+            // When the character landed, the velocity of such a body was unknown, so the character's velocity is made
+            // relative to it only now.
             if self.from.has_landed {
                 self.from.velocity.x = taken_along(self.from.velocity.x, velocity.x);
             }

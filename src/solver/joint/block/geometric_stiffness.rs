@@ -28,8 +28,8 @@ pub(super) enum Leverage {
     None,
     /// The point turns with the body, but the force does not: the derivative is `F . r`. Contains the lever ratios.
     AtPoint([Vec2<Ratio>; 2]),
-    /// The force along an axis turns with A, and acts at a point of B. The stiffness is estimated as `|F|` times the
-    /// length of the arm, which is at least the derivative with respect to the rotation of the body. Contains the
+    /// The force along an axis turns with A, and acts at a point of B. For either body, the stiffness is estimated as
+    /// `|F|` times the length of its arm, an upper bound of the derivative with respect to its rotation. Contains the
     /// lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }

@@ -10,7 +10,8 @@
 //! Entries of `H` are at most 1. Impulses, which are stored as speeds, are scaled by `R^-1` and scaled back by `R`.
 //!
 //! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by
-//! `impulseScale K p`. Its softness is therefore part of its scale, and `S = 1`:
+//! `impulseScale K p`. Its softness is therefore part of its scale `R`, and its `S` in the equations of
+//! `mod.rs` is 1:
 //!
 //! ```text
 //! impulseScale I + massScale K = R' R'^T,   H = sqrt(massScale a) R'^-1 J,   R = sqrt(massScale) R'
