@@ -147,8 +147,10 @@ impl Candidate {
     }
 }
 
-/// Bits of the speeds and poses of the bodies that differ. Bits whose value is closest to the observed difference come
-/// first: unless the body collides strongly, most of the difference stays in the number with the flipped bit.
+/// The bits that may have been flipped before the tick: all bits of the speeds and poses of those bodies whose states
+/// differ after the tick. A flipped bit changes its number by the value of the bit, and unless the body collides strongly,
+/// most of this change is still in the same number after the tick. Bits whose value is closest to the difference of their
+/// number therefore come first.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects {

@@ -53,8 +53,8 @@ impl SolverBody {
     }
 }
 
-/// The rotation of a body in units of 2^-32 turns: `turn` divided by the radius of gyration. The result may exceed a
-/// full turn.
+/// Converts `turn`, the rotation of a body times its radius of gyration (`k dtheta`, in metres), to the rotation in units
+/// of 2^-32 of a full turn. The result may exceed a full turn.
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

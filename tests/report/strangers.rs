@@ -126,8 +126,9 @@ fn search(rules: Rules, inputs_at: impl Fn(u64) -> [u16; 2]) -> (u64, u64) {
     (LOADS.get(), raw.work() - rules.work)
 }
 
-/// The search may cost as much as 15 ticks, and a load is charged as half a tick. The tick after a load costs up to
-/// three times as much as other ticks, because the broad phase searches all pairs again.
+/// The rerun of the 10 ticks and the search may together cost as much as 25 ticks (two and a half times the replay: see
+/// `Effort::Bounded`), so 15 ticks are left for the search. A load is charged as half a tick. The tick after a load costs
+/// up to three times as much as other ticks, because the broad phase searches all pairs again.
 #[test]
 fn work_within_a_step_is_charged_to_the_search() {
     let (loads, work) = search(PLAIN, |_| [0, 0]);

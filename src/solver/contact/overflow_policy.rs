@@ -58,7 +58,8 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn see_separation(&mut self, _: L::Int) {}
     /// The relative velocity `J v` along a row, as a speed.
     fn speed(&mut self, wide: L::Wide) -> L::Int;
-    /// A friction limit as a speed, from friction ratios times impulses.
+    /// Converts a friction limit, the sum of friction ratios times normal impulses, from the format of the products to
+    /// that of [`Speed`].
     fn limit(wide: L::Wide) -> L::Int;
     fn add(a: L::Int, b: L::Int) -> L::Int;
     fn sub(a: L::Int, b: L::Int) -> L::Int;

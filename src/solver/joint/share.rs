@@ -148,7 +148,8 @@ impl OwnJoints<'_> {
     }
 }
 
-/// Coefficients of a lever ratio `e` averaged over a rotation `t`: `e + half t (-e_y, e_x) - sixth t^2 e`.
+/// Coefficients for the average of a lever ratio `e` over a rotation `t`: `e + half t (-e_y, e_x) - sixth t^2 e`. `half`
+/// and `sixth` are 1/2 and 1/6 times [`Softness::stretch`], the factor by which joints overestimate the rotation.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,

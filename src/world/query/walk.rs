@@ -167,7 +167,8 @@ impl<'a> Walk<'a> {
             for plane in &mut met {
                 plane.separation = plane.height(travelled);
             }
-            // The cast has stopped at the gap that the character keeps, which counts as no distance.
+            // The cast has stopped about [`SKIN`] before this surface. Separations here are measured from that gap, so
+            // this one is 0.
             met.extend(hit.map(|(_, plane)| MoverPlane { separation: Fx::ZERO, ..plane }));
         }
     }

@@ -76,8 +76,8 @@ struct Visit {
 impl Visit {
     /// Follows a pair through the tick. `was_inside` is whether its shapes overlapped at the end of the last tick.
     fn of(state: &State, scratch: &Scratch, pair: Pair, was_inside: bool) -> Self {
-        // The search clips only its first shape. A shape of a fixed body comes first, because other bodies have no
-        // segments so long that they need clipping.
+        // `first_overlap` clips long segments, but only as its first shape. Only fixed bodies have segments so long that
+        // they need clipping, so a shape of a fixed body is put first.
         let (a, b) = match state.body_of(pair.1).kind() {
             BodyKind::Fixed => (pair.1, pair.0),
             BodyKind::Kinematic | BodyKind::Dynamic => pair,

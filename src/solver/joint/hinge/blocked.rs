@@ -189,7 +189,8 @@ impl HingeSet {
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
-    /// Returns impulses to the hinge. They must be within the bounds of impulses in the state.
+    /// Returns impulses from the block to the hinge. Each must be within ±`IMPULSE_MAX`, because the hinge's impulses are
+    /// stored in the state, which allows no larger ones.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.batches[number];

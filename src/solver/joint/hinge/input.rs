@@ -193,7 +193,8 @@ fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
 }
 
-/// Largest length of a lever ratio. Up to this length, its average over a predicted rotation fits the format.
+/// Largest length of a lever ratio. The average of a ratio over the predicted rotation (`Stretch` in `share.rs`) may be
+/// about 1 % longer than the ratio. With this limit, the average still fits a [`Ratio`] (±128).
 pub(super) const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].
