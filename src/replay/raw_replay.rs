@@ -166,15 +166,13 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays the tick whose inputs were read, by calling `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let RawReplay { game, inputs, limits, position, admitted, is_loaded, .. } = self;
-        let is_first = core::mem::take(is_loaded);
-        // A state of a file may come from anyone, so its first tick is limited as well.
-        let fresh = world_of(game).filter(|_| is_first).map_or(0, World::fresh_cache_work);
-        let tick_work = limits.tick_work.saturating_add(fresh);
-        let limits = match position.tick < *admitted {
-            true => Limits { tick_work: u64::MAX, total_work: u64::MAX, ..limits.clone() },
-            false => Limits { tick_work, ..limits.clone() },
-        };
-        let done = play_within(game, inputs, &limits, &mut position.work, step)?;
+        let world = if core::mem::take(is_loaded) { game.world_mut() } else { None };
+        if let Some(world) = world {
+            world.exempt_fresh_caches();
+        }
+        let unlimited = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..limits.clone() };
+        let limits = if position.tick < *admitted { &unlimited } else { &*limits };
+        let done = play_within(game, inputs, limits, &mut position.work, step)?;
         position.tick += 1;
         if position.tick == *admitted + 1 {
             *admitted += 1;

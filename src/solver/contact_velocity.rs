@@ -45,6 +45,7 @@ struct Group<const N: usize> {
     /// because `free` and `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
+    /// The velocity change by contacts in the last sub-step. During [`ContactVelocities::forget`], the velocities before.
     change: VelocityW<Ints<N>>,
 }
 
@@ -58,6 +59,10 @@ enum Task {
     Suspend,
     /// Adds the velocity to `v_free`, in shared groups.
     Resume,
+    /// Records the velocities in `change`, in shared groups.
+    Save,
+    /// Restores the recorded velocities, and adds their difference from the present ones to `v_free`, in shared groups.
+    Forget,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -99,6 +104,19 @@ impl ContactVelocities {
         if self.shared {
             context.wait();
             self.perform(Task::Resume, context);
+            context.wait();
+        }
+    }
+
+    /// Runs `withdraw`, which takes velocity changes by contacts back, and restores the velocities. The changes then do
+    /// not count as changes by contacts.
+    pub(super) fn forget(&mut self, context: &StepContext<'_>, withdraw: impl FnOnce()) {
+        if self.shared {
+            self.perform(Task::Save, context);
+            context.wait();
+            withdraw();
+            context.wait();
+            self.perform(Task::Forget, context);
             context.wait();
         }
     }
@@ -173,7 +191,14 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(sum::<L, N>(load::<L, N>(free), v), free);
                 }
-                Task::Suspend | Task::Resume => {}
+                Task::Save if *shared => store::<L, N>(L::velocities(bodies, at), change),
+                Task::Forget if *shared => {
+                    let (v, saved) = (L::velocities(bodies, at), load::<L, N>(change));
+                    let forgotten = difference::<L, N>(saved, v);
+                    store::<L, N>(sum::<L, N>(load::<L, N>(free), forgotten), free);
+                    L::set_velocities(bodies, at, saved);
+                }
+                Task::Suspend | Task::Resume | Task::Save | Task::Forget => {}
             }
         }
     }

@@ -84,13 +84,12 @@ impl SolverShare<'_, '_> {
         if !tuning.relax {
             contacts.run(Measure, context);
         }
-        if contacts.has_extras() {
-            contacts.run(FastImpact::Withdraw, context);
-            velocities.exempt(context, || {
-                contacts.run(FastImpact::Restore, context);
-                contacts.bounce(context);
-            });
-            contacts.add_hits(context);
+        if contacts.may_bounce() {
+            velocities.forget(context, || contacts.run(FastImpact::Withdraw, context));
+            velocities.exempt(context, || contacts.bounce(context));
+        }
+        contacts.add_hits(context);
+        if contacts.may_bounce() {
             contacts.run(FastImpact::Clear, context);
         }
     }

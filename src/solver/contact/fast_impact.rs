@@ -21,43 +21,46 @@ use crate::simd::{Ints, Lanes};
 /// heaps do not come to rest.
 const FAST: Speed = Speed::lit("64");
 
-/// The stages of a sub-step for fast impacts, in this order.
+/// Operations on the impulses of contacts with a fast impact. The impulse of rolling resistance stays: the next sub-step
+/// removes it, because its limit is then 0.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) enum FastImpact {
-    /// Takes the impulses back, so that their velocity changes are not repeated.
+    /// Takes the impulses back. Runs within `ContactVelocities::forget`, so that the velocities stay as they are, but the
+    /// next sub-step does not repeat their changes. Velocities that saturate are no faults: the next sub-step then only
+    /// begins with a less accurate guess.
     Withdraw,
-    /// Applies the impulses again. Must run within `ContactVelocities::exempt`.
-    Restore,
-    /// Sets the impulses to zero.
+    /// Sets the impulses to zero, at the end of the sub-step.
     Clear,
 }
 
 impl Operation<Contacts> for FastImpact {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let BatchParts { batch, extra: Some(extras), bodies, .. } = parts else { return };
         let fast = fast::<L, N>(batch, extras);
         if !L::any(fast) {
             return;
         }
-        if let FastImpact::Clear = self {
-            for point in &mut batch.points[..batch.count] {
-                clear::<L, N>(&mut point.normal_lambda, fast);
+        match self {
+            FastImpact::Withdraw => {
+                let mut unread = 0;
+                let policy = &mut Saturating::<L, N>::new(&mut unread);
+                let back =
+                    |lambda: &Ints<N>| L::select(fast, L::sub(L::splat(0), L::load(lambda)), L::splat(0));
+                let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+                for point in &batch.points[..batch.count] {
+                    policy.apply(&mut pair, &point.normal, back(&point.normal_lambda));
+                }
+                policy.apply(&mut pair, &batch.tangent, back(&batch.tangent_lambda));
+                pair.store(bodies, &batch.changed);
             }
-            clear::<L, N>(&mut batch.tangent_lambda, fast);
-            return;
+            FastImpact::Clear => {
+                for point in &mut batch.points[..batch.count] {
+                    clear::<L, N>(&mut point.normal_lambda, fast);
+                }
+                clear::<L, N>(&mut batch.tangent_lambda, fast);
+            }
         }
-        let policy = &mut Saturating::<L, N>::new(faults);
-        let part = |lambda: &Ints<N>| {
-            let lambda = L::select(fast, L::load(lambda), L::splat(0));
-            if let FastImpact::Withdraw = self { L::sub(L::splat(0), lambda) } else { lambda }
-        };
-        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
-        for point in &batch.points[..batch.count] {
-            policy.apply(&mut pair, &point.normal, part(&point.normal_lambda));
-        }
-        policy.apply(&mut pair, &batch.tangent, part(&batch.tangent_lambda));
-        pair.store(bodies, &batch.changed);
     }
 }
 

@@ -95,7 +95,7 @@ impl Input {
 
 impl ContactSource<'_> {
     /// Adds a node for each touching pair, and fills `prospects` with a summary of each body's contacts. In the
-    /// returned features, only `elastic` and `hits` are set.
+    /// returned features, only `elastic`, `bounces` and `hits` are set.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
         let mut features = Features::default();
         prospects.clear();
@@ -112,6 +112,7 @@ impl ContactSource<'_> {
                 | flag(pair.is_impact, Prospect::IMPACT);
             if pair.extras {
                 flags |= flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
+                features.bounces |= pair.surface.restitution.is_positive();
                 features.elastic |= pair.surface.restitution > ELASTIC;
                 features.hits |= pair.is_hit;
             }

@@ -85,6 +85,8 @@ pub(super) struct ContactSet {
 struct Features {
     /// Whether any contact is elastic: its restitution is above `restitution::ELASTIC`.
     elastic: bool,
+    /// Whether any contact has a restitution.
+    bounces: bool,
     cold: bool,
     hits: bool,
     extras: bool,
@@ -135,6 +137,10 @@ impl ContactShare<'_> {
 
     pub(super) fn has_extras(&self) -> bool {
         self.features.extras
+    }
+
+    pub(super) fn may_bounce(&self) -> bool {
+        self.features.bounces
     }
 
     pub(super) fn run_cold(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {

@@ -46,7 +46,7 @@ pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
 }
 
 pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
-    /// Restricts the counting of faults to the given lanes.
+    /// Restricts the counting of faults to the given lanes. Velocities that `apply` clamps count in every lane.
     #[inline(always)]
     fn count_faults_in(&mut self, _: L::Mask) {}
     /// Checks velocities or displacements that an operation has loaded.

@@ -94,7 +94,6 @@ impl Operation<Contacts> for ApplyRestitution {
                 policy.apply(&mut pair, &point.normal, L::sub(new, old));
             }
         }
-        policy.count_faults_in(active);
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }

@@ -27,17 +27,31 @@ const VISITED_PER_WORK: usize = 4;
 pub(crate) struct WorkMeter {
     spent: u64,
     max: u64,
+    /// Units of searches and visits that will not be counted.
+    exempt: u64,
 }
 
 impl Default for WorkMeter {
     fn default() -> Self {
-        WorkMeter { spent: 0, max: u64::MAX }
+        WorkMeter { spent: 0, max: u64::MAX, exempt: 0 }
     }
 }
 
 impl WorkMeter {
-    pub(crate) fn start(max: u64) -> Self {
-        WorkMeter { spent: 0, max }
+    /// Sets the budget. Keeps the exempt units.
+    pub(crate) fn start(&mut self, max: u64) {
+        (self.spent, self.max) = (0, max);
+    }
+
+    /// Exempts units of the next searches and visits.
+    pub(crate) fn exempt(&mut self, units: u64) {
+        self.exempt = units;
+    }
+
+    fn spend_beyond_exempt(&mut self, units: u64) {
+        let exempt = units.min(self.exempt);
+        self.exempt -= exempt;
+        self.spend(units - exempt);
     }
 
     /// Counts units. Returns false if the budget does not cover them: the caller may skip the work.
@@ -50,7 +64,7 @@ impl WorkMeter {
     /// Counts a search for pairs that compares this many pairs of boxes. Returns the number of new pairs that the
     /// remaining budget covers.
     pub(crate) fn spend_search(&mut self, comparisons: u64) -> usize {
-        self.spend(search_work(comparisons));
+        self.spend_beyond_exempt(search_work(comparisons));
         let pairs = self.max.saturating_sub(self.spent) / (NEW_PAIR_WORK + NARROW_PHASE_WORK);
         usize::try_from(pairs).unwrap_or(usize::MAX)
     }
@@ -62,7 +76,7 @@ impl WorkMeter {
 
     /// Counts a visit of all sleeping contacts.
     pub(crate) fn spend_visit(&mut self, sleeping_contacts: &[Contact]) {
-        self.spend(visit_work(sleeping_contacts));
+        self.spend_beyond_exempt(visit_work(sleeping_contacts));
     }
 
     pub(crate) fn is_exhausted(&self) -> bool {

@@ -3,7 +3,7 @@
 use crate::collision::Moved;
 use crate::solver::SolverSettings;
 use crate::world::World;
-use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work, search_work, visit_work};
+use crate::world::cache::{NARROW_PHASE_WORK, pair_work, search_work, visit_work};
 use crate::world::state::State;
 
 /// Work units of the tick itself, even if the world is empty. Such a tick takes some microseconds.
@@ -65,18 +65,18 @@ impl World {
         u64::try_from(slots.iter().sum::<usize>() / SCANNED_PER_WORK).unwrap_or(u64::MAX)
     }
 
-    /// Largest work that the next tick counts in addition if the world was decoded: its caches are new, so the tick
+    /// Exempts the work that the next tick needs in addition if the world was decoded: its caches are new, so the tick
     /// searches all pairs and visits all sleeping contacts.
-    pub(crate) fn fresh_cache_work(&self) -> u64 {
+    pub(crate) fn exempt_fresh_caches(&mut self) {
         let search = search_work(self.scratch.shapes.broad_phase().comparisons(Moved::All));
-        search.saturating_add(visit_work(&self.state.sleeping_contacts))
+        self.scratch.meter.exempt(search.saturating_add(visit_work(&self.state.sleeping_contacts)));
     }
 
     /// Starts to count work whose amount is known only after it is done, such as sweeps of fast bodies, the search for
     /// pairs, new and woken pairs, joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may
     /// be skipped, so the state may be wrong from then on.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
-        self.scratch.meter = WorkMeter::start(max);
+        self.scratch.meter.start(max);
     }
 
     pub(crate) fn is_work_exhausted(&self) -> bool {
