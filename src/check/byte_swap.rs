@@ -16,8 +16,8 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Minimum interval in ticks between stored saves. Before the end of the first interval, the saves after 1, 2, 4, 8 and
-/// so on ticks are stored too.
+/// Interval in ticks at which saves are stored, or [`CheckOptions::every`](super::CheckOptions::every) if that is
+/// longer. In the first interval, the saves after 1, 2, 4, 8 and so on ticks are stored as well.
 const INTERVAL: u64 = 16;
 /// Number of ticks after a save for which the changed state is played.
 const FUTURE: usize = 48;
@@ -45,7 +45,8 @@ impl<G: Game> Default for ByteSwaps<G> {
 }
 
 impl<G: Game> ByteSwaps<G> {
-    /// Stores a save after the tick if one is due, and examines stored saves that are [`FUTURE`] ticks old.
+    /// Stores a save after the tick if one is due, and examines the stored saves after which [`FUTURE`] ticks were
+    /// played.
     pub(super) fn perturb(
         &mut self,
         game: &G,
@@ -102,8 +103,8 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     /// Plays the stored state and the changed state with the same inputs. Returns the number of ticks after which their
-    /// hashes differ, and the saves at the start. `None` if the hashes stay equal, or if the changed bytes are not the
-    /// exact save of a state with the stored hash.
+    /// hashes differ, and the saves of both states before these ticks. `None` if the hashes stay equal, or if the
+    /// changed bytes are not the exact save of a state with the stored hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,

@@ -25,7 +25,7 @@ use crate::world::Phase;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The hash after the tick differs from the reference run.
+    /// The hash after the tick differs from that of the reference run.
     Hash,
     /// The hash agrees, but the digest of a phase of the physics step differs.
     Phase,
@@ -59,14 +59,15 @@ pub enum Fault {
     Unrecordable(RecordError),
 }
 
-/// The inputs with which a game plays some ticks before it is rolled back and plays them with the actual inputs.
+/// The inputs with which a game first plays some ticks. It is then rolled back and plays these ticks with the actual
+/// inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
     /// The actual inputs.
     Right,
     /// The default input for every player.
     Default,
-    /// In each rolled-back tick, the inputs of the last tick before the rolled-back ones.
+    /// In each of these ticks, the inputs of the last tick before them.
     Held,
 }
 

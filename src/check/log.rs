@@ -43,7 +43,7 @@ impl<G: Game> Log<G> {
         vec![G::Input::default(); self.players as usize].into()
     }
 
-    /// Records a replay, up to the first tick that cannot be recorded.
+    /// Records a replay, up to the first tick that cannot be recorded. Empty if the setup cannot start a game.
     pub(super) fn record(&self, setup: &G::Setup) -> Vec<u8> {
         let Ok(mut recording) = Recording::<G>::start(setup, self.interval) else {
             return Vec::new();

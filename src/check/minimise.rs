@@ -156,8 +156,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays a candidate log repeatedly, and stops as soon as it can no longer reach the needed number of failures. A
-    /// candidate that fails is cut after its last failing tick.
+    /// Plays a candidate log repeatedly. Returns `None` as soon as it can no longer fail as often as [`Search::need`]
+    /// requires. A candidate that fails often enough is cut after its last failing tick.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
@@ -182,8 +182,8 @@ impl<G: Game> Search<'_, G> {
         self.spent >= self.options.budget
     }
 
-    /// Removes ticks, inputs of ticks, inputs of single players, and changes between ticks. Repeats this until the log
-    /// does not become smaller or the budget is spent.
+    /// Tries to remove ticks, to replace the inputs of all players or of one player by the default, and to repeat the
+    /// inputs of the tick before. Continues until the log does not become smaller or the budget is spent.
     fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
         loop {
             let before = weight(&best.ticks);
@@ -205,7 +205,8 @@ impl<G: Game> Search<'_, G> {
         }
     }
 
-    /// Applies a change to the whole log, then to halves, quarters and so on, and keeps the results that still fail.
+    /// Applies a change to the whole log, then to halves, quarters and so on. Keeps the results that are smaller and
+    /// still fail.
     fn pass(&mut self, log: &Log<G>, best: &mut Attempt<G>, change: &Change<'_, G>) {
         let mut size = best.ticks.len();
         while size > 0 {
@@ -241,8 +242,8 @@ fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> al
     inputs.into()
 }
 
-/// Size of a log: the numbers of ticks, of inputs that are not the default, and of changes between ticks, in this
-/// order.
+/// Size of a log: the numbers of ticks, of inputs that are not the default, and of changes between ticks, which are
+/// compared in this order.
 fn weight<I: Default + PartialEq>(ticks: &[alloc::rc::Rc<[I]>]) -> (usize, usize, usize) {
     let nothing = I::default();
     let inputs = ticks.iter().flat_map(|inputs| inputs.iter());

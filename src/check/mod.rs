@@ -48,8 +48,8 @@ use log::{Log, Logged};
 
 /// Plays a game with the inputs of every tick, in every [`Variant`] of the options.
 ///
-/// With the default options, a check takes as long as about twenty plain runs of the log, or up to 200 runs of a log of
-/// at most 24 ticks. `inputs` has a list for each tick, with an input for each player.
+/// With the default options, a check takes as long as about twenty plain runs of the log. For a log of at most 24
+/// ticks, it may take as long as 200. `inputs` has a list for each tick, with an input for each player.
 ///
 /// # Errors
 /// [`CheckError::Failed`] with the fault of the game. [`CheckError::Record`] if the setup cannot start a game, or if a

@@ -104,8 +104,8 @@ impl fmt::Display for Variant {
     }
 }
 
-/// Maximum length of a log in which every tick with rollbacks plays all of them, because they would not all have their
-/// turn. Minimised logs are often this short.
+/// Maximum length, in ticks, of a log in which each tick with rollbacks tests all combinations of depth and guess. Such
+/// a log has too few ticks to test all of them in turn. Minimised logs are often this short.
 const SHORT_TICKS: u64 = 24;
 
 /// The rollback depths of [`Variant::RolledBack`].

@@ -90,8 +90,8 @@ impl<G: Game> Past<G> {
     }
 }
 
-/// The rollbacks at a tick after `earlier` stored states, fewer than `depth_max` near the start of the log. `turn`
-/// counts the ticks with rollbacks.
+/// The rollbacks to make at a tick. `earlier` is the number of stored states of earlier ticks, which is less than
+/// `depth_max` near the start of the log. `turn` counts the ticks with rollbacks.
 fn rollbacks(depths: Depths, depth_max: u32, earlier: u32, turn: u64) -> Vec<Rollback> {
     let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
     match depths {

@@ -11,7 +11,7 @@ use crate::lockstep::{Game, decode_inputs, world_of};
 use crate::world::World;
 
 /// Simulates the inputs of a replay without comparing checkpoints, unlike [`VerifiedReplay`](super::VerifiedReplay).
-/// Its states are those of the running engine.
+/// Its states are therefore those that this machine and this version of the engine compute.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -33,7 +33,8 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
-    /// Number of ticks that have been played within the limits. Their work is not limited when they are played again.
+    /// Number of ticks, from the start, that were played within the limits. Their work is not limited if they are
+    /// played again.
     admitted: u64,
     /// Whether no tick was played since [`RawReplay::go`]. The first tick after a loaded state costs more.
     is_loaded: bool,
@@ -166,6 +167,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays the tick whose inputs were read, by calling `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let RawReplay { game, inputs, limits, position, admitted, is_loaded, .. } = self;
+        // The first tick after a loaded state fills the caches. Only this work is exempt, because a state from a file may
+        // come from anyone.
         let world = if core::mem::take(is_loaded) { game.world_mut() } else { None };
         if let Some(world) = world {
             world.exempt_fresh_caches();

@@ -89,8 +89,8 @@ pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, Compare
     Ok(Comparison { subjects: candidate::subjects(found), ..Comparison::new() })
 }
 
-/// Collects the data of both sides, and differences that need no simulation. Without `b`, the second side is the
-/// running engine.
+/// Collects the data of both sides, and the differences that can be found without a simulation. If there is no `b`, the
+/// running engine is the second side.
 pub(super) fn survey<'a, G: Game>(
     a: &'a Evidence,
     b: Option<&'a Evidence>,
@@ -160,7 +160,7 @@ fn check_rules<G: Game>(semantics: u32, name: &str, version: u32) -> Result<(), 
     Ok(())
 }
 
-/// The differences between the setups of two replays. A replay of another game is an error.
+/// The differences between the setups of two replays. Returns an error if one of the replays is of another game.
 fn setup_differences<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,

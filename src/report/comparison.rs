@@ -78,7 +78,7 @@ pub enum Blame {
     Unknown,
 }
 
-/// Comparison of one side with the rerun, the simulation of the inputs by the running engine.
+/// Comparison of one side with the rerun, which is the simulation of the inputs by the running engine.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
@@ -241,8 +241,8 @@ impl Comparison {
         }
     }
 
-    /// Whether no difference was found. A replay without a trailer, or a report, may be the beginning of the other
-    /// file.
+    /// Whether no difference was found. Two files may then still differ in length: a report, or a replay without a
+    /// trailer, may be the beginning of the other file.
     #[must_use]
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()

@@ -229,7 +229,8 @@ impl Endpoint {
     }
 
     /// Requests to join through a contact at the next [`update`](Endpoint::update). Discards a session and its events.
-    /// After a session or a refusal, the new session has another incarnation, but the same key, role, delay bounds and number of guessed ticks.
+    /// After a session or a refusal, the new session has another incarnation, but the same key, role, delay bounds and
+    /// number of guessed ticks.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         self.events.clear();
@@ -254,18 +255,12 @@ impl Endpoint {
     /// The session, once this peer takes part.
     #[must_use]
     pub fn session(&self) -> Option<&Session> {
-        match &self.phase {
-            Phase::InMatch(session) => Some(session),
-            _ => None,
-        }
+        if let Phase::InMatch(session) = &self.phase { Some(session) } else { None }
     }
 
     /// The session, once this peer takes part.
     pub fn session_mut(&mut self) -> Option<&mut Session> {
-        match &mut self.phase {
-            Phase::InMatch(session) => Some(session),
-            _ => None,
-        }
+        if let Phase::InMatch(session) = &mut self.phase { Some(session) } else { None }
     }
 
     /// Bytes received and total bytes of the state, while it is downloaded.

@@ -26,6 +26,22 @@ fn a_peer_that_changes_the_match_has_no_replay() {
     assert!(end.ticks > 60 && end.replay.is_empty());
 }
 
+/// The end that a peer has set for one match does not end the next one.
+#[test]
+fn the_end_of_a_match_is_not_that_of_the_next_one() {
+    let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
+    let mut table = Table::new(10, 0);
+    table.host(options);
+    table.join(options, 0);
+    table.play(2000);
+    table.host(PeerOptions { start_with: 2, ..options });
+    table.peer(1).end_at(200);
+    table.peer(1).ask(Network::address(2));
+    table.play(6000);
+    assert_eq!(table.peer(1).status(), Some(Status::Playing));
+    assert!(table.peer(1).confirmed() > 250, "{}", table.peer(1).confirmed());
+}
+
 /// Events are in the queue until the program fetches them.
 #[test]
 fn no_event_of_a_match_is_delivered_after_it() {

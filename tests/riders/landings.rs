@@ -36,7 +36,8 @@ fn a_jump_in_a_train_ends_at_rest_in_the_train() {
                 state.velocity.y = if jumps { fx!(5) } else { state.velocity.y - fall(rate) };
                 state = world.move_character(&mover, &state, QueryFilter::default()).state;
                 let from_train = state.position.x - world.body(train).expect("there").position().x;
-                // The first landing is from rest in the world.
+                // At the start, the character is at rest in the world and not on the train, so slipping is measured
+                // from tick 3 on.
                 if tick == 3 {
                     on_train = from_train;
                 }

@@ -17,7 +17,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// Shapes with their feet at `y = -0.7`.
+/// Names and shapes. The lowest points of the shapes are at `y = -0.7`.
 fn shapes() -> [(&'static str, Geometry); 4] {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     let sharp = Polygon::rectangle(fx!(0.3), fx!(0.7)).expect("valid");
@@ -43,7 +43,7 @@ enum Platform {
     Ellipse,
     /// A platform that turns to and fro about its middle.
     Turning,
-    /// Flush plates that move together.
+    /// Nine plates, side by side, that move together.
     Train,
     /// A wheel that turns to and fro below the character.
     Wheel,
@@ -235,7 +235,8 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // Without this stretch, a step would be higher than its nominal height for feet that are still on the slope.
+        // A level stretch. Without it, a step would be higher than its nominal height for feet that are still on the
+        // slope.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }

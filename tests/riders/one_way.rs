@@ -156,8 +156,8 @@ fn characters_drop_through_platforms() {
     }
 }
 
-/// A character whose chest is inside a one-way ledge is lifted by a platform that comes up through the floor: it passes
-/// the ledge, but not the platform.
+/// A character whose chest is inside a one-way ledge is lifted by a platform that comes up through the floor. The
+/// character passes through the ledge, but not through the platform.
 #[test]
 fn characters_inside_a_ledge_are_lifted_by_platforms() {
     for ((name, shape), platform) in shapes().into_iter().flat_map(|shape| platforms().map(|p| (shape, p))) {
@@ -173,7 +173,7 @@ fn characters_inside_a_ledge_are_lifted_by_platforms() {
             let lift = world.spawn(&lift, &platform).expect("valid");
             let mover = Mover::new(shape).expect("valid");
             let filter = QueryFilter { mask: if masked { !2 } else { u64::MAX }, ..QueryFilter::default() };
-            // It has jumped into the ledge from below.
+            // The character has jumped into the ledge from below.
             let mut state = MoverState::at(at(fx!(0.1), fx!(-0.7999)));
             let jump = MoverState { velocity: at(fx!(0), fx!(90)), ..state };
             let inside = QueryFilter { mask: 0, ..filter };

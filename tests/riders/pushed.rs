@@ -1,4 +1,4 @@
-//! Characters that touch other surfaces are pushed out and carried along these surfaces.
+//! Characters that are pushed or carried slide along the other surfaces that they touch.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Filter, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -158,7 +158,7 @@ const CRATE: u64 = 2;
 
 const SPEED: Fx = fx!(3);
 
-/// Bodies that the filter sees stop a character, also if its kinematic body follows it.
+/// Bodies that the filter sees stop a character, even if the character's kinematic body follows it.
 #[test]
 fn a_character_pushes_crates_by_impulses_or_by_its_kinematic_body() {
     let follow = |world: &mut World, own: BodyId, moved: &Moved| {

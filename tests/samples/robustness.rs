@@ -175,8 +175,7 @@ fn jointed_bodies_bear_every_change() {
     assert!(stage.world.widest_joint_gap() < fx!(0.01));
 }
 
-/// Sample "StaticVsBulletBug": a bullet of 300 m/s. A bounce changes a velocity by at most 511 m/s; a larger change is
-/// clamped and counts as a fault.
+/// Sample "StaticVsBulletBug": a bullet of 300 m/s.
 #[test]
 fn a_body_that_became_fixed_stops_a_bullet() {
     let corners = [
@@ -186,7 +185,7 @@ fn a_body_that_became_fixed_stops_a_bullet() {
         at!(68.8476562, 70.2392578),
         at!(48.8525391, 70.2392578),
     ];
-    for (share, clamped) in [(1, 1), (2, 0)] {
+    for share in [1, 2] {
         let mut stage = Stage::weightless();
         let slab = hull(&corners).friction(fx!(0.5)).restitution(fx!(0.1));
         let slab = stage.add(Vec2::ZERO, slab);
@@ -199,13 +198,8 @@ fn a_body_that_became_fixed_stops_a_bullet() {
             stage.world.step();
             assert!(stage.place(bullet).y > fx!(70.2), "{:?}", stage.place(bullet));
         }
-        let (returned, full) = (stage.velocity(bullet).y, velocity.y * -9 / 10);
-        assert_eq!(stage.world.faults(), clamped);
-        if clamped == 0 {
-            near(returned, full, fx!(0.1));
-        } else {
-            assert!(returned > full / 2 && returned < full, "{returned} m/s");
-        }
+        near(stage.velocity(bullet).y, velocity.y * -9 / 10, fx!(0.1));
+        assert_eq!(stage.world.faults(), 0);
     }
 }
 

@@ -12,7 +12,7 @@ use lockstep2d::solver::Revolute;
 use lockstep2d::world::Config;
 
 /// A bone: a vertical capsule with its centre, half length and radius, in metres. `hinge` is the index of the parent
-/// bone, and the height of the hinge.
+/// bone, and the height of the hinge in metres.
 struct Bone {
     centre: (Fx, Fx),
     half: Fx,

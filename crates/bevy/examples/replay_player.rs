@@ -1,5 +1,5 @@
 //! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, arrow keys step, Home and
-//! End go to the ends, PageUp and PageDown jump by 60 ticks.
+//! End go to the first and the last tick, PageUp and PageDown jump by 60 ticks.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::LockstepError;

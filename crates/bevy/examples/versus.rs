@@ -1,7 +1,7 @@
 //! Two players push each other off a platform, with rollback. Arrow keys.
 //!
-//! `versus` plays against a bot over a simulated bad line; `versus host 0.0.0.0:7000` and `versus join ADDRESS` play
-//! over UDP.
+//! `versus` plays against a bot over a simulated network with delay and packet loss; `versus host 0.0.0.0:7000` and
+//! `versus join ADDRESS` play over UDP.
 
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::time::Duration;
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let lockstep: Lockstep<Versus> = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["host", address] => Lockstep::host(&(), options, me, Udp::bind(address)?)?,
         ["join", address] => {
-            // A host of this example listens on IPv4.
+            // The host of this example listens on IPv4 only.
             let mut found = address.to_socket_addrs()?;
             let host = found.find(SocketAddr::is_ipv4).ok_or("no such IPv4 address")?;
             Lockstep::join(&(), options, me, Udp::bind("0.0.0.0:0")?, socket_address(host))?

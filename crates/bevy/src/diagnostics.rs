@@ -11,7 +11,8 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepStatus;
 
-/// Measures the diagnostics whose paths are its constants. `LogDiagnosticsPlugin`, for example, prints them.
+/// Measures the diagnostics whose paths are the constants of this type. `LogDiagnosticsPlugin`, for example, prints
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepDiagnosticsPlugin<G>(PhantomData<fn() -> G>);
 
@@ -24,7 +25,7 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 impl<G> LockstepDiagnosticsPlugin<G> {
     /// Time that the driver takes in a frame, in milliseconds: [`LockstepStatus::step_time`].
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
-    /// Largest number of ticks that a rollback in a frame went back.
+    /// Largest number of ticks by which a rollback went back in a frame.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
     /// Number of played ticks that are not confirmed.
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");
@@ -45,7 +46,7 @@ impl<G: LockstepGame> Plugin for LockstepDiagnosticsPlugin<G> {
     }
 }
 
-/// Frames between two measurements of a save. Each measurement encodes a save.
+/// Number of frames between two measurements of the size of a save. Each measurement encodes a save, which takes time.
 const SAVE_INTERVAL: u32 = 64;
 
 fn measure<G: LockstepGame>(

@@ -28,7 +28,8 @@ pub struct DragPlugin;
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// Body to hold. While it is `None`, the first dynamic body at the position will be held.
+    /// Body that is held until the pointer is released. While it is `None`, the first dynamic body that the pointer
+    /// reaches becomes the target.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -43,13 +44,13 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer. Holds the first dynamic body at this point until [`DragHand::release`]. If there is none,
-    /// holds the first dynamic body that the pointer reaches later.
+    /// Presses the pointer at a position, in units of `Transform`. Holds the first dynamic body there until
+    /// [`DragHand::release`]. If there is none, holds the first dynamic body that the pointer reaches later.
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }
 
-    /// Presses the pointer on a body, which is held at this point until [`DragHand::release`].
+    /// Presses the pointer at a position, and holds `body` at this point until [`DragHand::release`].
     pub fn hold_body(&mut self, body: BodyId, at: FloatVec2) {
         *self = DragHand { at: Some(at), target: Some(body), held: None };
     }
@@ -94,7 +95,7 @@ pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     Vec2::new(metres(at.x), metres(at.y))
 }
 
-/// Releases a body of a former game. Another body may have the same id in the next game.
+/// Releases the pointer when another game begins: there, another body may have the id of the body that was held.
 fn let_go(lockstep: Res<Lockstep<Sandbox>>, mut hand: ResMut<DragHand>, mut game: Local<Option<u64>>) {
     let former = game.replace(lockstep.number());
     if former.is_some_and(|former| former != lockstep.number()) && hand.target.is_some() {
@@ -102,7 +103,8 @@ fn let_go(lockstep: Res<Lockstep<Sandbox>>, mut hand: ResMut<DragHand>, mut game
     }
 }
 
-/// `pulled` is the command of the last call.
+/// Adds the command that pulls the held body to the next input of player 0. `pulled` is the command that the last call
+/// added.
 pub(crate) fn pull(
     mut hand: ResMut<DragHand>,
     lockstep: Res<Lockstep<Sandbox>>,
@@ -110,8 +112,8 @@ pub(crate) fn pull(
     mut inputs: ResMut<Inputs<Sandbox>>,
     mut pulled: Local<Option<Command>>,
 ) {
-    // No tick may have used the last command, for example during a pause. It is then replaced, or removed if the body
-    // was released.
+    // If no tick has used the last command, for example during a pause, it is still in the input. It is removed here,
+    // so that the input has at most one pull.
     if let (Some(last), Some(once)) = (pulled.take(), inputs.pending(0)) {
         once.retain(|command| *command != last);
     }
@@ -150,7 +152,8 @@ const DAMPING: Fx = fx!(25);
 /// Largest acceleration along each axis, in m/s2.
 const ACCELERATION_MAX: Fx = fx!(500);
 
-/// Force of a damped spring from the grip to the pointer.
+/// Command that pulls the grabbed point to the pointer, with the force of a damped spring. `None` if the body no longer
+/// exists or is not dynamic. The spring is stretched by at most 10 m along each axis.
 fn pull_command(world: &World, held: Held, at: Vec2<Fx>) -> Option<Command> {
     let body = world.body(held.body).filter(|body| body.is_dynamic())?;
     let grip = body.transform().apply(held.grip);

@@ -129,12 +129,12 @@ pub struct PredictedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// Reports that a rollback has removed a [`PredictedEvent`], whose sound can then be stopped, for example. It is sent
-/// more than 16 ticks after the event, because the event may occur again until then. At the end of a match, it is sent
-/// at once.
+/// Reports that a rollback has removed a [`PredictedEvent`], whose sound can then be stopped, for example. The message
+/// is sent when the game has played more than 16 ticks after the tick of the removed event, because the event may occur
+/// again until then. At the end of a match, it is sent at once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
-    /// Number of ticks played, including the tick of the event.
+    /// The tick of the [`PredictedEvent`].
     pub tick: u64,
     /// The event that was predicted.
     pub event: WorldEvent,

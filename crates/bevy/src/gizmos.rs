@@ -15,7 +15,8 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepSettings;
 
-/// Draws the state of the world, without interpolation: the bodies, not their views.
+/// Draws the bodies at their poses after the last tick, without interpolation. These poses may differ from those of
+/// their views.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepGizmosPlugin<G>(PhantomData<fn() -> G>);
 
@@ -31,11 +32,11 @@ impl<G> Default for LockstepGizmosPlugin<G> {
 pub struct LockstepGizmos {
     /// The shapes of all bodies.
     pub outlines: bool,
-    /// Outlines in one colour per island.
+    /// Outlines in the colour of their island, whose bodies fall asleep together.
     pub islands: bool,
     /// Fat boxes of the broad phase.
     pub fat_boxes: bool,
-    /// Inner nodes of the broad phase.
+    /// Boxes of the inner nodes of the broad phase.
     pub broad_phase: bool,
     /// Contact points.
     pub contact_points: bool,
@@ -45,9 +46,9 @@ pub struct LockstepGizmos {
     pub contact_forces: bool,
     /// Contact points in the colours of the solver's graph colouring.
     pub solver_colours: bool,
-    /// Anchors and arms of joints.
+    /// Anchors and errors of enabled joints, and lines to the bodies that they connect.
     pub joints: bool,
-    /// Sizes of joint gaps.
+    /// Sizes of the joint errors, as text.
     pub joint_errors: bool,
     /// Centres of mass.
     pub centres_of_mass: bool,
@@ -125,7 +126,7 @@ fn draw_world<G: LockstepGame>(
     each_primitive(world, group.layers(), &mut |primitive| draw(&mut gizmos, &primitive, scale));
 }
 
-/// Radius of a point, in units of `Transform`.
+/// Radius of the circle that marks a point, in units of `Transform`.
 const MARK: f32 = 3.0;
 /// Length of the arrow of a direction, in units of `Transform`.
 const DIRECTION: f32 = 15.0;
@@ -161,7 +162,7 @@ fn draw(gizmos: &mut Gizmos<LockstepGizmos>, primitive: &Primitive, scale: f32) 
     }
 }
 
-/// Outline at a distance around a convex polygon. The arc around each vertex consists of four lines.
+/// Outline at the distance `radius` around a convex polygon. The arc around each vertex consists of four lines.
 fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     if radius <= 0.0 {
         return vertices.to_vec();

@@ -6,11 +6,11 @@ use crate::game::LockstepGame;
 
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
-/// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
-/// that are down. A *once* input replaces the held input for the next played tick alone: a jump, a list of commands. So
-/// a press counts once. During a pause, a *once* input waits for the next tick. In a replay, for a spectator and after
-/// an error, it is removed in the same frame. When another game begins, it is removed before the systems of
-/// [`LockstepSystems::Inputs`](crate::LockstepSystems) run.
+/// A frame may play no tick or several. A *held* input, such as a direction or a button that is down, is the input of
+/// every tick until it changes. A *once* input, such as a jump or a list of commands, replaces the held input in the
+/// next played tick only. So a press counts once, even if a frame plays several ticks. During a pause, a *once* input
+/// waits for the next tick. In a replay, for a spectator and after an error, it is removed in the same frame. When
+/// another game begins, it is removed before the systems of [`LockstepSystems::Inputs`](crate::LockstepSystems) run.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;
@@ -52,13 +52,13 @@ impl<G: LockstepGame> Inputs<G> {
         &mut self.seat(player).held
     }
 
-    /// The input of a local player for the next tick alone. At first it is a copy of the held input.
+    /// The input of a local player for the next tick only. It begins as a copy of the held input.
     pub fn once(&mut self, player: u32) -> &mut G::Input {
         let Seat { held, once } = self.seat(player);
         once.get_or_insert_with(|| held.clone())
     }
 
-    /// The input of a local player for the next tick alone, if there is one already.
+    /// The input of a local player for the next tick only, if [`Inputs::once`] has created it.
     pub(crate) fn pending(&mut self, player: u32) -> Option<&mut G::Input> {
         self.seats.get_mut(player as usize)?.once.as_mut()
     }

@@ -14,7 +14,7 @@ use crate::views::BodyView;
 /// A body for [`build_level`]. The entity becomes its view.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnBody {
-    /// The body with its position. The `Transform` of the entity is ignored, because floats are rounded.
+    /// The body with its position. The `Transform` of the entity is ignored, because its floats are rounded.
     pub body: BodyDef,
     /// Shapes of the body.
     pub shapes: Vec<ShapeDef>,
@@ -45,14 +45,15 @@ pub struct SpawnJoint {
     pub body_b: Entity,
     /// The joint.
     pub kind: JointKind,
-    /// Anchor, in metres in the world.
+    /// Anchor in world coordinates, in metres.
     pub anchor: Vec2<Fx>,
     /// The x axis of the joint's frames, as a direction in the world. Used by sliders, wheels and racks.
     pub axis: Vec2<Fx>,
 }
 
 impl SpawnJoint {
-    /// A joint at a point of the world, with the x axis as its axis.
+    /// A joint with its anchor at a point of the world, in metres. Its axis is the world's x axis: see
+    /// [`SpawnJoint::axis`].
     #[must_use]
     pub fn new(
         [body_a, body_b]: [Entity; 2],
@@ -105,14 +106,14 @@ impl core::error::Error for LevelError {}
 /// Turns entities with a [`SpawnBody`] or [`SpawnJoint`] into commands for the setup of a game.
 ///
 /// Removes these components, and inserts a [`BodyView`] into the entities of bodies. Bodies and joints are created in
-/// the order of the indices of their entities. For a match, build the level on one machine and send the commands to the
-/// others, because entities may differ between machines.
+/// the order of the indices of their entities. These indices may differ between machines. Therefore, for a match, build
+/// the level on one machine and send the commands to the others.
 ///
 /// # Errors
 /// [`LevelError`]. All entities are then unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
-    // A scratch world assigns the same ids to the bodies as the world of the game.
+    // This temporary world assigns to the bodies the ids that the world of the game will assign.
     let mut scratch = World::new(config).map_err(|error| LevelError::Refused { entity: None, error })?;
     let mut commands = Vec::new();
     let mut bodies = EntityHashMap::default();

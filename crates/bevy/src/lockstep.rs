@@ -35,7 +35,7 @@ pub enum DriverKind {
 /// The game can be changed only through [`Inputs`]: other changes would be missing on other machines and in the replay.
 #[derive(Resource)]
 pub struct Lockstep<G: LockstepGame> {
-    /// Unique in the program. A resource that is replaced within a frame is recognised by its new number.
+    /// Unique in the program, so that systems recognise a resource that was replaced within a frame.
     number: u64,
     driver: Driver<G>,
     is_paused: bool,
@@ -61,8 +61,8 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(Self::new(Driver::Local(Box::new(LocalDriver::new(setup)?))))
     }
 
-    /// A local game for tests. From tick `depth` on, every tick loads the state of `depth` ticks ago, plays these ticks
-    /// again and compares the state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
+    /// A local game for tests. From tick `depth` on, the driver loads the state of `depth` ticks ago after every tick,
+    /// plays these ticks again and compares the state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
     ///
     /// # Errors
     /// [`LockstepError::Setup`] when the setup cannot start a game.
@@ -91,7 +91,7 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(Self::of_peer(Peer::host(setup, options, me, AnyTransport::new(transport))?))
     }
 
-    /// Joins a match, also late; see [`Peer::join`].
+    /// Joins a match, also after it has begun; see [`Peer::join`].
     ///
     /// # Errors
     /// As [`Lockstep::host`].
@@ -159,7 +159,8 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Stops the ticks. In a match, the other peers receive a [`MatchEvent`](crate::MatchEvent) and decide whether they
-    /// stop, too. Peers that do not stop wait for this peer, without the limit of [`PeerOptions::patience`].
+    /// stop, too. Peers that do not stop wait for this peer until it resumes, even for longer than
+    /// [`PeerOptions::patience`].
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -267,8 +268,9 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The local peer of a match, to leave or end it or to kick a player. The plugin calls `update` and `advance`. Use
-    /// [`Lockstep::report`] and [`Lockstep::replay_so_far`] for the files of the match.
+    /// The local peer of a match, to leave or end it or to kick a player. The plugin calls `update` and `advance`, so
+    /// the game must not call them. Use [`Lockstep::report`] and [`Lockstep::replay_so_far`] for the files of the
+    /// match.
     pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
         match &mut self.driver {
             Driver::Match(network) => Some(network.peer_mut()),
@@ -302,7 +304,7 @@ impl<G: LockstepGame> Lockstep<G> {
     pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let single_steps = core::mem::take(&mut self.single_steps);
         let has_failed = self.failure.is_some();
-        // Whether ticks can be played.
+        // `Ok(true)` if ticks can be played. `Ok(false)` if an earlier error still stops the game.
         let result = match &mut self.driver {
             Driver::Match(network) if has_failed => network.run_failed(time),
             _ if has_failed => Ok(false),
@@ -338,8 +340,8 @@ impl<G: LockstepGame> Lockstep<G> {
         self.peer_mut().and_then(Peer::next_event)
     }
 
-    /// Whether an error has stopped the game, or its match has ended. Only a replay can still play ticks, after a seek,
-    /// and a peer that joins again.
+    /// Whether an error has stopped the game, or its match has ended. After an error, ticks are played again only if a
+    /// replay seeks or a peer joins again.
     pub(crate) fn has_ended(&self) -> bool {
         self.failure.is_some() || matches!(&self.driver, Driver::Match(network) if network.has_ended())
     }

@@ -16,7 +16,7 @@ pub struct Observed<G> {
     log: Mutex<StepLog>,
 }
 
-/// A save of an [`Observed`] game. Encoded, it is a save of `G`.
+/// A save of an [`Observed`] game. Its encoding is that of the save of `G`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(transparent, bound = "S: Serialize + DeserializeOwned")]
 pub struct ObservedSave<S> {

@@ -25,10 +25,10 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 use crate::views::{BodyView, BodyViews};
 
 /// A picking backend: views receive `Pointer<Click>` and the other events of [`bevy::picking`] at the shapes of their
-/// bodies, except sensors. A view with [`Pickable::IGNORE`] is left out. The view with the largest z in the world is in
-/// front.
+/// bodies, except sensors. Views with [`Pickable::IGNORE`] receive none. If several views are at the pointer, the view
+/// with the largest global z is in front.
 ///
-/// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
+/// The plugin needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///
 /// ```
 /// # use bevy::picking::{InteractionPlugin, PickingPlugin};
@@ -63,8 +63,8 @@ impl<G: LockstepGame> Plugin for LockstepPickingPlugin<G> {
     }
 }
 
-/// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger, with [`LockstepPickingPlugin`] and
-/// [`DragPlugin`].
+/// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger. Adds [`LockstepPickingPlugin`] and
+/// [`DragPlugin`] if the app does not have them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointerDragPlugin;
 
@@ -82,7 +82,7 @@ impl Plugin for PointerDragPlugin {
     }
 }
 
-/// Point where a ray meets the plane of the views, and its distance along the ray.
+/// Point where a ray meets the plane z = 0, in which views are picked, and its distance along the ray.
 fn on_plane(ray: Ray3d) -> Option<(Vec3, f32)> {
     let distance = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d { normal: Dir3::Z })?;
     Some((ray.get_point(distance), distance))
@@ -133,8 +133,8 @@ fn views_at<'a>(
 #[derive(Resource, Default)]
 struct HoldingPointer {
     ray: Option<RayId>,
-    /// Body and position of a press by the pointer that holds a body already. The pointer may have been released in the
-    /// same frame before this press.
+    /// Body and position of another press by the pointer that holds a body. If the pointer was also released in this
+    /// frame, it holds this body instead.
     next: Option<(RayId, BodyId, Vec2)>,
 }
 
@@ -159,7 +159,8 @@ fn grab(
             holding.ray = Some(ray);
         }
         Some(held) if held.pointer == ray.pointer => {
-            // Ancestors of the pressed view receive the press after it.
+            // The event of a press also reaches the ancestors of the pressed view, one after the other. Only the first
+            // press is kept.
             holding.next.get_or_insert((ray, body, at.xy()));
         }
         Some(_) => {}

@@ -59,7 +59,8 @@ pub struct LockstepSettings {
     /// once.
     pub smoothing_half_life: Duration,
     /// Displacements above this limit, in metres, are jumps without smoothing or interpolation. The limit applies to
-    /// displacements by a rollback, and to movements in a tick that the body's velocity does not explain.
+    /// displacements by a rollback, and to movements in a tick that are more than twice as far as the body's speed
+    /// explains.
     pub smoothing_limit: f32,
 }
 

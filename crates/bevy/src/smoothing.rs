@@ -1,4 +1,4 @@
-//! Poses of views: interpolated between two ticks, and displaced for a moment after a rollback has moved the body.
+//! Poses of views: interpolated between two ticks, and offset for a moment after a rollback has moved the body.
 
 use core::f32::consts::TAU;
 use core::time::Duration;
@@ -56,19 +56,19 @@ pub(crate) struct Offset {
 /// Length in metres below which an offset is dropped, if its angle is also below [`ANGLE_MIN`]. It is a tenth of a
 /// pixel at the default scale.
 const POSITION_MIN: f32 = 1e-3;
-/// Angle in radians: see [`POSITION_MIN`].
+/// Angle in radians below which an offset is dropped: see [`POSITION_MIN`].
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {
     pub(crate) const ZERO: Self = Offset { position: Vec2::ZERO, angle: 0.0 };
 
-    /// The displacement between poses, along the shorter arc. It is computed in fixed point, because floats are too
-    /// coarse far from the origin.
+    /// The difference between two poses, with the rotation along the shorter arc. It is computed in fixed point,
+    /// because floats are too coarse far from the origin.
     pub(crate) fn between(from: Pose, to: Pose) -> Self {
         Offset { position: metres(to.position - from.position), angle: radians(to.angle - from.angle) }
     }
 
-    /// Adds a displacement. A sum longer than `limit` metres is dropped, so that the view jumps.
+    /// Adds a displacement. If the sum is longer than `limit` metres, drops it, so that the view jumps.
     pub(crate) fn add(&mut self, other: Self, limit: f32) {
         self.position += other.position;
         self.angle += other.angle;

@@ -12,9 +12,9 @@ use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 use crate::views::Identity;
 
-/// A tick, as a number of ticks since the start of an epoch. A new epoch begins after a seek, and when a loaded state
-/// is from an earlier epoch or was decoded from bytes. The tick at the start of an epoch may be unknown until the
-/// driver sets it.
+/// A tick, as a number of ticks since the start of an epoch. A new epoch begins after a seek, and after a load of a
+/// state that is from an earlier epoch or was decoded from bytes. The tick at the start of an epoch may be unknown
+/// until the driver sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
@@ -68,14 +68,14 @@ pub(crate) struct StepLog {
     pub(crate) after: Poses,
     is_after_stale: bool,
     shown: Option<Stamp>,
-    /// Poses of the tick `shown`, if it was played again.
+    /// Poses after the tick `shown`, if a rollback has played this tick again.
     pub(crate) shown_again: Option<Poses>,
-    /// Shown bodies whose ids may now belong to other bodies: bodies that a loaded state lacks, and all bodies from
-    /// before a seek.
+    /// Bodies that have views, but whose ids may now belong to other bodies: bodies that a loaded state lacks, and all
+    /// bodies from before a seek.
     pub(crate) missing: BTreeMap<BodyId, Shown>,
     /// Number of ticks played since the last frame, including repeated ones.
     pub(crate) stepped: u32,
-    /// Largest number of ticks that a load went back since the last frame.
+    /// Largest number of ticks by which a load went back since the last frame.
     pub(crate) replayed: u32,
     /// State at which the log was suspended. `None` while the log records.
     suspended_at: Option<Stamp>,
@@ -84,7 +84,7 @@ pub(crate) struct StepLog {
 }
 
 impl Entry {
-    /// The event, if it was announced.
+    /// The event as a withdrawn event, if it was announced.
     fn withdrawn(self) -> Option<Withdrawn> {
         let Entry { event, announced } = self;
         announced.map(|announced| Withdrawn { event, announced })
@@ -123,16 +123,16 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
-        // If the tick of an identity is played again and the body still has that identity, the body keeps its view.
-        // Changes in later ticks do not matter.
+        // A body keeps its view if, after the tick at which its identity was taken has been played again, it still has
+        // this identity. Changes in later ticks do not matter.
         let (now, is_same) = (self.stamp(), |body, shown: &Shown| shown.identity.is_of(world, body));
         self.missing.retain(|body, shown| shown.at != now || !is_same(*body, shown));
         // Some games do not step their world in every tick, for example in a pause between rounds.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
-            // An event that occurs again takes the place of the nearest withdrawn event that is alike. Of two at equal
-            // distances, it takes the place of the older one.
+            // If an event occurs again, it takes over the announcement of the withdrawn event that is alike and nearest
+            // in time. Of two such events at the same distance, the older one is chosen.
             let distance = |other: &Withdrawn| other.event.tick.abs_diff(event.tick);
             let alike = withdrawn
                 .iter()
@@ -176,8 +176,8 @@ impl StepLog {
 
     fn miss(&mut self, bodies: impl IntoIterator<Item = (BodyId, Shown)>) {
         for (body, shown) in bodies {
-            // The view still shows the body of the last frame. The first identity recorded for an id is that of this
-            // body.
+            // If there is an entry for this id already, it stays: it belongs to the body that the view has shown since
+            // the last frame.
             self.missing.entry(body).or_insert(shown);
         }
     }
@@ -229,7 +229,7 @@ impl StepLog {
         Mark { stamp: self.stamp(), pending: self.pending.clone() }
     }
 
-    /// Returns to a mark, after the driver has restored its state.
+    /// Returns to a mark, after the driver has restored the state at the mark.
     pub(crate) fn return_to(&mut self, mark: Mark, world: Option<&World>) {
         let Mark { stamp: Stamp { epoch, ticks }, pending } = mark;
         (self.epoch, self.ticks, self.pending) = (epoch, ticks, pending);
@@ -256,7 +256,7 @@ impl StepLog {
         (self.shown, self.shown_again) = (None, None);
     }
 
-    /// Records that the views show the current tick. Captures the poses of a loaded state.
+    /// Records that the views show the current tick. If this tick was loaded and not played, captures its poses first.
     pub(crate) fn show(&mut self, world: Option<&World>) {
         if self.is_after_stale {
             self.refresh(world);

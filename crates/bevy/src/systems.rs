@@ -116,7 +116,8 @@ pub(crate) fn write_views<G: LockstepGame>(
     }
     for (view, entity, mut transform) in &mut shown {
         let Some(view) = views.view_mut(view.body()).filter(|view| view.entity == entity) else { continue };
-        // The game may have changed or replaced the `Transform`. Writes of this system do not count as changes here.
+        // The game may have changed or replaced the `Transform`. Bevy does not report the writes of this system to the
+        // system itself.
         if view.is_settled && !transform.is_changed() {
             continue;
         }
@@ -142,13 +143,13 @@ struct Jumps<'a> {
     log: &'a StepLog,
     /// Ticks of the game per second. Its world may make several steps in a tick.
     tick_rate: u32,
-    /// Movements up to this limit, in metres, are no jumps.
+    /// A movement of at most this distance, in metres, is no jump.
     limit: f32,
 }
 
 impl Jumps<'_> {
     /// Whether the origin of a body moved by more than the limit, and by more than twice its speed times the duration
-    /// of a tick. The larger speed of before and after the tick counts.
+    /// of a tick. The speed is the larger of the speeds before and after the tick.
     fn is_jump(&self, body: BodyId, previous: Pose, current: Pose) -> bool {
         if previous.position == current.position {
             return false;

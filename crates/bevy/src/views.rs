@@ -10,8 +10,9 @@ use crate::smoothing::Offset;
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
-/// If this component is added to an entity while the body has no view, that entity becomes the view when the body
-/// appears. If a view is despawned or loses this component, the body has another view from the next frame on.
+/// If you add this component to an entity for a body that has no view, the entity becomes the view of this body, as
+/// soon as the body exists. If a view is despawned or loses this component, the body has another view from the next
+/// frame on.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A rollback or a seek may
 /// replace a body by another body. The view is kept if both have the same id, kind, user data and shapes.
@@ -111,7 +112,8 @@ impl BodyViews {
         self.frame = self.frame.wrapping_add(1);
     }
 
-    /// Moves the view of a body. Returns `false` if the body has no view.
+    /// Sets the poses of a body's view, and marks the view as seen in this frame. Returns `false` if the body has no
+    /// view.
     pub(crate) fn see(&mut self, body: BodyId, previous: Pose, current: Pose) -> bool {
         let frame = self.frame;
         let Some(view) = self.view_mut(body) else { return false };
@@ -158,7 +160,7 @@ impl BodyViews {
     }
 }
 
-/// Distinguishes bodies of the same id after a rollback or a seek.
+/// Tells whether a body and the body that had the same id before a rollback or a seek are to share a view.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Identity {
     kind: BodyKind,

@@ -1,4 +1,5 @@
-//! Matches and replays that cannot continue: the others of a match continue, and a peer can join again.
+//! Matches and replays that stop with an error. The other peers of a match continue, and the stopped peer can join
+//! again.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -16,11 +17,11 @@ use serde::{Deserialize, Serialize};
 const TICK: Duration = Duration::from_nanos(16_666_667);
 
 thread_local! {
-    /// Number that a tick adds. A replay of ticks that added another number diverges.
+    /// Number that each tick adds to the count. A replay that was recorded with another number diverges.
     static STEP: Cell<u64> = const { Cell::new(1) };
 }
 
-/// Counts. Its inputs are bytes without a fixed length.
+/// A game that adds a number to a count in each tick. Its inputs are lists of bytes of any length.
 #[derive(Clone, Serialize, Deserialize)]
 struct Count(u64);
 
@@ -75,7 +76,7 @@ fn drained<M: Message>(app: &mut App) -> Vec<M> {
 #[test]
 fn a_peer_with_an_error_leaves_and_can_join_again() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
-    // Nobody is dropped for his silence.
+    // The patience is so long that a silent peer is not dropped.
     let patience = Duration::from_secs(600);
     let options = PeerOptions { input_bytes: Some(8), patience, ..PeerOptions::rollback() };
     let me = |number: u64| PeerIdentity::new([number, number + 10, number + 20, number + 30]);
@@ -127,7 +128,8 @@ fn a_refused_peer_can_ask_another_one() {
     let [other, same] = [1, 2].map(Network::address);
     let guest = Lockstep::join(&(), options(16), me(3), network.port(3), other).unwrap();
     let mut apps = [app(host(1, 8).unwrap()), app(host(2, 16).unwrap()), app(guest)];
-    // Returns how often the guest has said that its game has stopped.
+    // Returns the number of `LockstepFailed` messages of the guest, whether the guest has stopped, and whether it has
+    // more than 60 confirmed ticks.
     let mut play = |contact| {
         if let Some(contact) = contact {
             lockstep(&mut apps[2]).peer_mut().unwrap().ask(contact);

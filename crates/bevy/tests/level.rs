@@ -192,7 +192,7 @@ fn a_hand_drags_only_dynamic_bodies_of_the_current_game() {
     app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(fix);
     let refused = |app: &App| app.world().resource::<Lockstep<Sandbox>>().game().refused();
     (0..3).for_each(|_| app.update());
-    // The pull of the tick in which the body became fixed.
+    // Only the pull in the tick in which the body became fixed was refused.
     assert_eq!(refused(&app), 1);
     (0..10).for_each(|_| app.update());
     assert_eq!(refused(&app), 1);

@@ -224,7 +224,7 @@ fn a_pause_before_a_seat_is_requested_when_there_is_a_seat() {
     assert_eq!(pauses, [true, false]);
 }
 
-/// Checks that all players have the same confirmed events, and that each predicted event is sent once.
+/// Checks that all players have the same confirmed events, and that predicted events are either retracted or confirmed.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
     assert!(all.values().map(Vec::len).sum::<usize>() > 500);
@@ -265,7 +265,7 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
     assert_eq!(played, events);
 }
 
-/// Largest movement in one frame, in metres, of the host's view of the guest's body.
+/// Largest distance, in metres, by which the host's view of the guest's body moves in one frame.
 fn largest_jump(settings: LockstepSettings) -> f32 {
     let network = bad_network();
     let setup = Setup::default();

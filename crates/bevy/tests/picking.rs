@@ -120,7 +120,7 @@ fn a_click_finds_the_body_below_the_pointer() {
 fn the_view_with_the_larger_z_is_in_front() {
     let mut screen = Screen::new();
     for (z, front) in [(1.0, 1), (-1.0, 0)] {
-        // The ball is in the platform: z decides which view is in front.
+        // The ball is inside the platform: z decides which view is in front.
         let ball = screen.app.world().resource::<BodyViews>().entity(screen.bodies[1]).unwrap();
         screen.app.world_mut().get_mut::<Transform>(ball).unwrap().translation.z = z;
         screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().resume();
@@ -172,7 +172,7 @@ fn layers_are_in_front_of_each_other() {
     screen.app.update();
     screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
     for (z, front) in [(1.0, 1), (-1.0, 0)] {
-        // The view of the ball is in a layer, and its own z is 0.
+        // The view of the ball is a child of a layer, and its z relative to the layer is 0.
         let layer = screen.app.world_mut().spawn(Transform::from_xyz(0.0, 0.0, z)).id();
         screen.app.world_mut().entity_mut(ball).insert(ChildOf(layer));
         screen.point_at(20.0, 0.0);

@@ -1,7 +1,7 @@
 // A page plays against a native player over WebRTC: node test.mjs PAGE BOT SCREENSHOT
 //
-// During the match, the page is loaded again and returns. Both players have the same last state, and the replay of the
-// native player verifies.
+// During the match, the page is loaded again and joins again. Both players have the same last state, and the replay of
+// the native player verifies.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { once } from "node:events";

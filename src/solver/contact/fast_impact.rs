@@ -1,8 +1,9 @@
 //! Fast impacts with restitution: the next sub-step does not apply their impulses again.
 //!
 //! In other contacts, the next sub-step first repeats the velocity change of the accumulated impulses and then corrects
-//! the impulses (`contact_velocity.rs`). After a rebound, the correction removes them completely. Between the two, the
-//! velocity is that of the rebound plus that of the impact. If this sum saturated, the rebound would become slower.
+//! the impulses (`contact_velocity.rs`). After a rebound, the correction removes the impulses completely. Between the
+//! repetition and the correction, the velocity is the rebound velocity plus the repeated velocity change. If this sum
+//! saturated, the rebound would become slower.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::pair::BodyPairW;
@@ -14,11 +15,12 @@ use super::restitution::bounces;
 use crate::math::Speed;
 use crate::simd::{Ints, Lanes};
 
-/// Normal approach speed, in m/s, from which an impact is fast. Velocities up to 511 m/s are in range, so that only
-/// impacts of more than half of it saturate if one of the bodies is at rest, and slower ones if both move.
+/// Normal approach speed, in m/s, from which an impact is fast. Velocities are limited to 511 m/s. If one of the bodies
+/// is at rest, the sum above saturates only in impacts at more than half of this limit; if both move, also in slower
+/// impacts.
 ///
-/// Slow impacts keep their impulses, because in heaps they recur: without the impulses, 5 instead of at most 3 of 120
-/// heaps do not come to rest.
+/// Slow impacts keep their impulses, because such impacts recur in heaps: without the impulses, 5 of 120 heaps do not
+/// come to rest, instead of at most 3.
 const FAST: Speed = Speed::lit("64");
 
 /// Operations on the impulses of contacts with a fast impact. The impulse of rolling resistance stays: the next sub-step

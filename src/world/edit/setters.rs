@@ -320,7 +320,7 @@ impl World {
         let State { contacts, sleeping_contacts, edited_contacts, .. } = &mut *self.state;
         for ((pair, old), (_, new)) in before.into_iter().zip(after).filter(|((_, old), (_, new))| old != new)
         {
-            // The other one of a pair of solid shapes is `None`.
+            // A pair of solid shapes has events either in `old` or in `new`.
             let Some(edited) = old.or(new) else { continue };
             edited_contacts.push(edited);
             if edited.sensor.is_none() {

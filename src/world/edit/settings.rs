@@ -19,9 +19,9 @@ impl World {
     /// The tick rate must stay the same in a networked match and in a recording.
     ///
     /// A lower [speed limit](SolverSettings::speed_max), which may follow from a lower tick rate, slows dynamic bodies
-    /// down in the next tick. Kinematic bodies keep the velocities that [`World::set_velocity`] gave them. Therefore the
-    /// settings are refused if a kinematic body is faster than the new limit. The same applies to a body on the way to a
-    /// target that is out of reach at the new tick rate: see [`World::move_to`].
+    /// down in the next tick. Kinematic bodies keep the velocities that [`World::set_velocity`] gave them. Therefore
+    /// the settings are refused if a kinematic body is faster than the new limit, or if the target of a kinematic body
+    /// is out of reach at the new tick rate: see [`World::move_to`].
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -79,7 +79,7 @@ impl World {
         if !(is_lower || has_other_rate) {
             return Ok(());
         }
-        // Stored velocities are rounded, so that one at the limit may be above it by a unit.
+        // Stored velocities are rounded, so a velocity at the limit may be stored as one unit more.
         let max_stored = max + Fx::from(Speed::DELTA);
         for (_, body) in self.state.bodies.iter().filter(|(_, body)| body.kind() == BodyKind::Kinematic) {
             match body.target.as_deref() {
@@ -129,7 +129,8 @@ impl World {
         }
         let convert = |impulse: &mut Speed| *impulse = scaled(*impulse, old_rate, new_rate, IMPULSE_MAX);
         let state = &mut *self.state;
-        // The sandbox charges a command for active contacts and for joints, but not for sleeping contacts.
+        // The work of a command in the sandbox includes active contacts and joints, but not sleeping contacts: they are
+        // counted here.
         self.scratch.meter.spend(u64::try_from(state.sleeping_contacts.len()).unwrap_or(u64::MAX));
         for contact in state.contacts.iter_mut().chain(state.sleeping_contacts.iter_mut()) {
             for point in &mut contact.points {

@@ -2,12 +2,12 @@
 //!
 //! A move is a cast. At a hit, the rest of the translation is deflected along the surface, and is cast again. Casts
 //! stop 0.1 mm before they touch, so that walking does not move a character into a shape. Planes, as in Box2D's
-//! `b2SolvePlanes`, push the character out of shapes that have moved over it. Sliding along planes instead of casts
-//! would stop the character at corners that it just misses.
+//! `b2SolvePlanes`, push the character out of shapes that have moved over it. They are not used for moves, because a
+//! character that slides along planes stops at corners that it would just miss.
 //!
 //! The slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same speed
-//! at any slope. Along other surfaces it slides without being deflected upwards. The rest of a walk into a wall is
-//! dropped.
+//! at any slope. Along other surfaces it slides without being deflected upwards. If it walks into a wall, the rest of
+//! the walk is dropped.
 //!
 //! A character stores the pose that the body of its ground had at the last move. The next move first displaces the
 //! character by as much as the point under its feet has moved since then. The velocity of the body would not be
@@ -28,7 +28,8 @@ use crate::fx;
 use crate::math::{Angle, Fx, Unit, Vec2, fx_div};
 use crate::world::World;
 
-/// Tolerance on the cosine of the steepest ground, for the rounding of normals and the 0.1 mm gap of casts.
+/// Tolerance for comparisons with the cosine of the steepest slope that is ground. It allows for the rounding of
+/// normals and for the 0.1 mm gap of casts.
 pub(super) const SLOPE_ROUNDING: Unit = Unit::lit("0.0005");
 
 /// Largest step height and snap distance in metres.
@@ -86,16 +87,17 @@ impl Mover {
         self
     }
 
-    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100.
+    /// Sets the largest height, in metres, of steps that the character climbs without a jump. Clamped to between 0 and
+    /// 100 m.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
         self
     }
 
-    /// Sets the largest drop of the ground in metres that the character follows within a tick, clamped to 0 to 100. The
-    /// distance should be at least the distance walked per tick times the tangent of the steepest slope, and at least
-    /// the height of steps to walk down.
+    /// Sets the largest drop of the ground, in metres, that the character follows within a tick. Clamped to between 0
+    /// and 100 m. The distance should be at least the distance walked per tick times the tangent of the steepest slope,
+    /// and at least the height of steps to walk down.
     #[must_use]
     pub fn snap_distance(mut self, distance: Fx) -> Self {
         self.snap_distance = distance.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -157,8 +159,9 @@ pub struct MoverState {
     /// Whether the last move brought the character from the air onto ground. The next move then makes `velocity.x`
     /// relative to ground that [`World::move_to`] moves, because the velocity of such ground is not known before.
     pub has_landed: bool,
-    /// Shapes solid from one side that the character overlaps and passes through until it has left them. The links of a
-    /// chain have one entry. If the list is full, the character passes through all such shapes that it overlaps.
+    /// Shapes that are solid from one side, and that the character overlaps. It passes through them until it has left
+    /// them. All links of a chain share one entry. If the list is full, the character passes through all such shapes
+    /// that it overlaps.
     pub passing: [Option<ShapeId>; MoverState::PASSING_MAX],
 }
 
@@ -222,9 +225,9 @@ impl Moved {
 impl World {
     /// Moves a character for one tick at its velocity, among the shapes that a filter sees. The world does not change.
     /// To let sensors, queries and other bodies notice the character, give it a kinematic body, leave that body out by
-    /// [`QueryFilter::except`], and let it follow by [`World::move_to`]. Bodies that the filter sees stop the character,
-    /// also if they are light, so that its own body does not reach them. To push them, apply impulses to the bodies in
-    /// [`Moved::met`], or leave their category out of the filter's mask.
+    /// [`QueryFilter::except`], and let it follow by [`World::move_to`]. Bodies that the filter sees stop the
+    /// character, even if they are light, so the character's kinematic body does not touch and push them. To push them,
+    /// apply impulses to the bodies in [`Moved::met`], or leave their category out of the filter's mask.
     ///
     /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
     /// the surface speed of a belt. Call this after each [`World::step`]. Otherwise the character lags behind its lift,

@@ -1,8 +1,8 @@
 //! Shapes that are solid from one side: which of them let a character pass.
 //!
-//! A character passes if it comes from the open side, or if it has been passing and still overlaps the shape. Its state
-//! lists the shapes that it overlaps at the end of a move. A shape that overlaps the character and is not in the list
-//! has moved over the character since then, and pushes it out.
+//! A character passes if it comes from the open side, or if it has been passing and still overlaps the shape. The
+//! character's state lists the shapes that it overlaps at the end of a move. A shape that overlaps the character in the
+//! next move and is not in the list has moved over the character in the meantime, and pushes it out.
 
 use alloc::vec::Vec;
 
@@ -14,12 +14,13 @@ use crate::collision::{SupportShape, distance, is_open, pass_direction};
 use crate::math::{Fx, Unit, Vec2};
 
 impl Walk<'_> {
-    /// Whether the character passes through a shape.
+    /// Whether the character passes through a shape, given the normal of the shape's surface, and the separation in
+    /// metres, which is negative if the two overlap.
     pub(super) fn passes(&self, id: ShapeId, normal: Vec2<Unit>, separation: Fx) -> bool {
         let Some(shape) = self.world.shape(id) else { return true };
         let is_open = || self.open_direction(shape).is_some_and(|direction| is_open(direction, normal));
-        // From the open side, links are not even met. A character that passes through a chain meets the end of the next
-        // link, and passes it too.
+        // Queries do not find links from their open side. But a character that passes through a chain meets the end of
+        // the next link, and has to pass through that link too.
         let goes_on = || self.was_passing(id) && (self.is_deep(separation) || is_open());
         shape.one_way().is_some() && is_open() || is_solid_from_one_side(shape) && goes_on()
     }
@@ -36,15 +37,15 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether the character was passing through a shape at the end of the last move. A full list may have left out
-    /// shapes, and therefore stands for all shapes.
+    /// Whether the character was passing through a shape at the end of the last move. If the list is full, it may lack
+    /// shapes, so the result is `true` for every shape.
     fn was_passing(&self, id: ShapeId) -> bool {
         let listed = &self.from.passing;
         listed.iter().all(Option::is_some) || listed.iter().flatten().any(|&other| self.is_one(id, other))
     }
 
-    /// Whether two shapes are one obstacle: the links of a chain are. A character that is passing through one link comes
-    /// to the next link from the side.
+    /// Whether two shapes are one obstacle: the same shape, or one-sided links of one body. A character that is passing
+    /// through one link of a chain comes to the next link from the side.
     fn is_one(&self, a: ShapeId, b: ShapeId) -> bool {
         let link_of = |id| self.world.shape(id).filter(|&shape| is_one_sided(shape)).map(Shape::body);
         a == b || link_of(a).is_some() && link_of(a) == link_of(b)

@@ -14,7 +14,8 @@ use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
 use crate::world::World;
 
-/// Largest number of casts with which a character slides, is carried, snaps to the ground or is pushed out.
+/// Largest number of casts in one stage of a move: carrying the character, pushing it out, sliding, or snapping to the
+/// ground.
 const TURNS_MAX: u32 = 8;
 
 /// Length in metres below which the rest of a translation is dropped.
@@ -23,21 +24,22 @@ const LEFT_OVER: Fx = fx!(0.000001);
 /// Largest distance in metres between a character and ground on which it stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
 
-/// Largest ratio of a push to the deepest overlap. A wedge of less than 15 degrees crushes the character, because it
-/// would have to move too far to the side.
+/// Largest ratio of a push to the deepest overlap. Out of a flat wedge, the character would have to move further to the
+/// side. It therefore stays where it is and is crushed: in a wedge of less than 15 degrees if one of the sides overlaps
+/// it, and of less than 29 degrees if both do.
 const PUSH_MAX: i64 = 4;
 
 /// Effect on a cast of the shapes that overlap the character.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Overlaps {
-    /// Overlapping shapes stop a cast that goes deeper.
+    /// An overlapping shape stops a cast that would move deeper into it.
     Stop,
     /// Shapes of fixed bodies stop a cast that goes deeper. Other overlapping shapes, such as the next car of a train,
     /// let the cast pass. They have moved over the character, and push it out after it has been carried.
     Pass,
 }
 
-/// A body that carries the character, and its velocity under the feet in m/s.
+/// A body that carries the character, and the velocity of this body under the character's feet in m/s.
 #[derive(Clone, Copy)]
 pub(super) struct Carrier {
     body: BodyId,
@@ -56,7 +58,7 @@ pub(super) struct Walk<'a> {
     along: Option<Vec2<Unit>>,
     /// Height in metres gained by walking.
     climbed: Fx,
-    /// Upward speed in m/s at which ground has pushed the character.
+    /// Largest upward speed in m/s at which ground has pushed the character.
     lifted: Fx,
     surfaces: Vec<(Surface, MoverPlane)>,
 }
@@ -85,7 +87,8 @@ impl<'a> Walk<'a> {
         self.surfaces.into_iter().map(|(_, plane)| plane).collect()
     }
 
-    /// Moves the character with the point under its feet, deflected by the shapes of other bodies that it meets.
+    /// Moves the character by as much as the point of its ground under its feet has moved since the last move. Shapes
+    /// of other bodies deflect this movement. Returns `None` if the body of the ground no longer exists or is disabled.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -193,7 +196,7 @@ impl<'a> Walk<'a> {
     pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
         let walked = self.along.is_some();
         let found = self.find_ground().filter(|plane| !self.leaves(plane));
-        // A character that was in the air has moved by the vertical part already.
+        // If the character was in the air, it has already moved by the vertical part of its velocity.
         if found.is_none() && walked && self.from.is_on_ground() {
             self.along = None;
             self.slide(Vec2::new(Fx::ZERO, in_tick(self.world, self.from.velocity).y));
@@ -251,7 +254,7 @@ impl<'a> Walk<'a> {
                 Surface::Ground | Surface::Step => {
                     self.on_ground = true;
                     if !self.rises() {
-                        // Walking keeps the length of the translation at any slope.
+                        // A walk covers the same distance at any slope.
                         let length =
                             self.along.map_or(left.x, |normal| along_surface(normal, Fx::ONE).dot(left));
                         left = along_surface(n, length);

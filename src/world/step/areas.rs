@@ -61,7 +61,7 @@ pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
     (is_acted_on(a, b) || is_acted_on(b, a)) && scratch.shapes.poses().are_within(pair, Fx::ZERO)
 }
 
-/// Time in seconds for which poses are predicted.
+/// Time in seconds after the start of the tick for which poses are predicted.
 fn time_ahead(state: &State) -> Fx {
     let sub_steps = i64::from(state.config.solver.sub_steps);
     let doubled = 2 * sub_steps * i64::from(state.config.tick_rate);
@@ -139,8 +139,8 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // Round outlines are approximated by polygons. Only the share of the polygon that is inside is used: it
-                // is multiplied by the true area of the shape.
+                // Round outlines are approximated by polygons. The share of the polygon that is inside is multiplied by
+                // the exact area of the shape.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);

@@ -14,8 +14,10 @@ use crate::world::events::{ContactEvent, Events, HitEvent};
 use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
-/// Reports pairs that begin or cease to touch. A pair touches if it is near at the start of the tick, or if the solver
-/// has pushed it apart. The second condition covers a fast bounce, which may begin and end within the tick.
+/// Reports pairs that begin or cease to touch. A pair begins to touch if the shapes are within the touching distance at
+/// the start of the tick, and ceases to touch if they are further apart than the speculative distance. In addition,
+/// every pair that the solver has pushed apart touches. This covers a fast bounce, which may begin and end within the
+/// tick.
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
     let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());
@@ -71,9 +73,14 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
 /// Reports the pairs whose events edits or the pair update have changed, and clears their list. Returns, in order, the
 /// active pairs that touched at the end of the last tick, but whose begin has not been reported.
 ///
-/// Each entry changes whether a pair touches and has events. The changes of a pair that is listed twice cancel out.
+/// A pair has events while it touches and the event switches of a shape are on. `changed` has an entry for each time
+/// that a pair began or ceased to have events. If a pair has an even number of entries, these changes cancel out.
 fn report_changed(state: &State, changed: &mut Vec<Reported>, events: &mut Events) -> Vec<Pair> {
     let touches = |list: &[Contact], pair: &Reported| {
+        // The events of sensors are not switched in this list, but a snapshot may have such an entry.
+        if pair.sensor.is_some() {
+            return false;
+        }
         let ContactEvent { shape_a, shape_b } = pair.shapes;
         let found = list.binary_search_by_key(&(shape_a.slot(), shape_b.slot()), |contact| contact.shapes);
         found.is_ok_and(|at| list[at].touching && state.reported(&list[at]) == Some(*pair))

@@ -1,8 +1,9 @@
 //! Continuous collision: fast bodies are swept from their old pose to the one that the solver has computed. They stop
 //! where they first overlap too deeply with a shape that they might otherwise pass through.
 //!
-//! Speculative contacts stop most fast bodies. The sweep catches what they cannot predict, such as rotating rods and
-//! speed gained within the tick. A stopped body keeps its velocity and continues in the next tick.
+//! Speculative contacts stop most fast bodies. The sweep also stops bodies whose motion these contacts cannot predict,
+//! such as rotating rods and bodies that gain speed within the tick. A stopped body keeps its velocity and continues in
+//! the next tick.
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
 //! such a body is fast is judged relative to the kinematic body, so that a body on a platform or in a drum is not held
@@ -22,7 +23,8 @@ use crate::world::cache::{Extents, MotionCache, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
-/// Movement of points in a tick, in metres, up to which a body is not fast, however thin it is.
+/// A body is not fast, however thin it is, if none of its points moves further than this distance, in metres, in a
+/// tick.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
 /// Work units of a search for a time of impact, which takes some 2 µs, or up to 10 µs for long thin shapes that rotate.
@@ -208,8 +210,8 @@ fn first_impact(
     first
 }
 
-/// Target of [`time_of_impact`] for a shape: a quarter of the depth at which the shape's centre would be on the surface,
-/// but at most 5 mm.
+/// Separation, in metres, at which [`time_of_impact`] stops a shape. It is negative: the shape overlaps the obstacle by
+/// a quarter of the shape's inner radius, but by at most 5 mm.
 fn target_of(support: &SupportShape) -> Fx {
     -(support.inner_radius() / 4).min(fx!(0.005))
 }
@@ -238,8 +240,8 @@ fn stop(
     })
 }
 
-/// Whether a kinematic body passes over a sleeping body that has to wake for it. It has to if a sweep would stop it, were
-/// it awake.
+/// Whether a kinematic body passes over a sleeping body that has to wake for it. The sleeping body has to wake if a
+/// sweep would stop it in the awake state.
 pub(super) fn wakes(state: &State, scratch: &mut Scratch, (a, b): Pair) -> bool {
     let (own, other) = if state.body_of(a).is_asleep() { (a, b) } else { (b, a) };
     let (body, obstacle) = (state.body_of(own), state.body_of(other));
@@ -268,7 +270,11 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     if body.kind() == BodyKind::Fixed {
         return (support, Sweep::fixed(body.centre));
     }
-    let movement = made_motion(state, scratch, state.shapes.at(shape).body().slot());
+    let mut movement = made_motion(state, scratch, state.shapes.at(shape).body().slot());
+    if body.is_dynamic() {
+        // A dynamic body may turn several times within a tick. A sweep against it would need too many steps.
+        movement.turn = Angle::from_turns(Fx::from_bits(movement.turn)).to_turns().to_bits();
+    }
     (at_start(support, &movement), movement)
 }
 

@@ -155,8 +155,8 @@ impl Sources<'_> {
     }
 }
 
-/// Does the work for a share whose result depends on the order of the shares. Runs on the calling thread, for one share
-/// after the other.
+/// Does the part of a share's work whose result depends on the order of the shares. Runs on the calling thread, for one
+/// share after the other.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));

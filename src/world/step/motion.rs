@@ -1,4 +1,5 @@
-//! The motion of a body within a tick as a sweep: predicted at the start of the tick, and made at its end.
+//! The motion of a body within a tick as a sweep: a prediction at the start of the tick, and the actual motion at its
+//! end.
 
 use crate::collision::{SupportShape, Sweep};
 use crate::math::{Angle, Fx, Rot, Shift, Vec2, narrow};
@@ -12,15 +13,15 @@ pub(super) fn made_motion(state: &State, scratch: &Scratch, slot: u32) -> Sweep 
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return Sweep::fixed(body.centre) };
     let start = scratch.sweeps.starts[index];
     let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
-    // The rotation of the solver does not lead to the final angle if a sweep has stopped the body or the body had a
-    // target. The body then makes the smallest rotation that leads to it.
+    // If a sweep has stopped the body or the body had a target, the rotation of the solver may not lead to the final
+    // angle. The result then has the smallest rotation to the final angle.
     let short = (body.angle - start.angle).to_turns().to_bits();
     let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
     let turn = if is_complete { solved } else { short };
     Sweep { start: start.centre, end: body.centre, turn }
 }
 
-/// The motion that the velocity of a kinematic body at the start of the tick leads to.
+/// The motion of a kinematic body in the tick, predicted from its target or, if it has none, from its velocity.
 pub(super) fn predicted_motion(state: &State, slot: u32) -> Sweep {
     let body = state.bodies.at(slot);
     let start = body.centre;

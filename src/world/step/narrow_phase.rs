@@ -206,8 +206,8 @@ impl NarrowPhase<'_> {
             }
             let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
             let Some(manifold) = manifolds.last_mut() else { continue };
-            // Displacements of the bodies from the start of the tick to the time of the manifold. Not 0 only if this is
-            // the time of impact.
+            // Displacements of the bodies from the start of the tick to the time of the manifold. They are 0 unless
+            // this is the time of impact.
             let mut moved_by = [Vec2::ZERO; 2];
             if !is_kept {
                 keep_reachable(state, poses, &pair, contact, manifold, sat);
@@ -286,7 +286,8 @@ fn manifold_of(
     collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
 }
 
-/// Removes the points of shapes that pass by each other or through a one-way shape.
+/// Removes the points that the shapes do not reach within the tick. Removes all points if the shapes pass by each
+/// other, or if one of them passes through the other, which is a one-way shape.
 #[inline(always)]
 fn keep_reachable(
     state: &State,

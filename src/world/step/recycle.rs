@@ -34,7 +34,7 @@ impl<'a> Recycling<'a> {
     /// kept.
     ///
     /// Nothing is kept on a kinematic body that turns, because lever arms that lag behind give the wrong velocity at
-    /// the contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
+    /// the contact: on a body that turns at 1 rad/s, a crate of 4 m x 2 m would creep by 35 mm/s.
     #[inline]
     pub(super) fn new(
         state: &'a State,
@@ -70,7 +70,7 @@ impl<'a> Recycling<'a> {
         };
         let kept = &contact.kept;
         let separations = kept.separations_at([side(0), side(1)], contact.count, self.movement_max)?;
-        // Uses a dynamic body, because the lever arm of a fixed body may be out of range.
+        // Computes the origin from a dynamic body, because the lever arm of a fixed body may be out of range.
         let [a, b] = self.bodies;
         let (centre, arm) = if b.is_dynamic() { (b.centre, kept.arm_b) } else { (a.centre, kept.arm_a) };
         Some(Recycled { origin: centre.wrapping_add(arm.widen()), separations })
@@ -79,14 +79,15 @@ impl<'a> Recycling<'a> {
     #[inline]
     pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
         let tolerance = |shape: &ShapeMotion| match shape.disc || self.rolls {
-            // The lever arm of a circle follows from the normal: both are kept up to the same movement.
+            // The lever arm of a circle follows from the normal, so it is kept up to the same movement as the manifold.
             true => self.movement_max.max(Length::ZERO),
             false => self.arm_tolerance,
         };
         contact.keep(manifold, self.bodies, self.shapes.map(tolerance));
     }
 
-    /// Keeps a manifold at the time of impact. `moved` has the displacements of the bodies until then.
+    /// Keeps a manifold at the time of impact. `moved` has the displacements of the bodies from the start of the tick
+    /// until then.
     pub(super) fn keep_impact(&self, contact: &mut Contact, manifold: &Manifold, moved: [Vec2<Length>; 2]) {
         contact.kept = KeptManifold::at_impact(manifold, self.bodies.map(Body::pose), moved);
     }

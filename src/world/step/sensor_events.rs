@@ -1,8 +1,8 @@
 //! Sensor events: shapes that overlap a sensor at the end of the tick, or that crossed it during the tick.
 //!
-//! The search follows every pair with a sensor from the poses at the start of the tick to the poses at its end. It
-//! takes the pairs of overlapping fat boxes, because fat boxes cover the predicted motion. It also compares each shape
-//! that has left its fat box with all shapes along its path.
+//! The search follows every pair with a sensor from the poses at the start of the tick to the poses at its end. These
+//! are the pairs whose fat boxes overlap, because fat boxes cover the predicted motion. In addition, each shape that
+//! has left its fat box is compared with all shapes along its path.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -19,7 +19,7 @@ use crate::world::state::{Side, State};
 /// Work units of [`Visit::of`] for a pair without a contact.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Number of comparisons that together cost one work unit, in the comparison of shapes that have left their fat boxes.
+/// Shapes that have left their fat boxes are compared with each other. This number of comparisons costs one work unit.
 const COMPARED_PER_WORK: u64 = 16;
 
 /// Reports overlaps with sensors, once all bodies have been moved.
@@ -94,7 +94,7 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // If the shapes do not overlap during the tick, an edit has parted them before it.
+            // If the shapes do not overlap during the tick, an edit before the tick has parted them.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
@@ -166,7 +166,7 @@ impl MovedShape {
     }
 }
 
-/// Reports the sensor pairs without a contact that have crossed or overlap because a shape has left its fat box. A pair
+/// Reports sensor pairs that have no contact but overlapped in the tick, because a shape has left its fat box. A pair
 /// that overlaps at the end of the tick becomes a contact, or is left out at the pair limit.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {

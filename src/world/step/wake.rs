@@ -25,7 +25,8 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
             let Some(island) = a.island.or(b.island) else { continue };
             let wakes = match state.sensor_of(pair) {
                 None => {
-                    // Speculative contacts foresee no rotation by a large part of a turn.
+                    // Speculative contacts cannot predict a rotation by a large part of a turn, so the sweep is
+                    // consulted as well.
                     will_touch(state, scratch.shapes.poses(), pair) || continuous::wakes(state, scratch, pair)
                 }
                 Some(_) => areas::wakes(state, scratch, pair),

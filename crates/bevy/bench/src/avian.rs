@@ -1,5 +1,5 @@
-//! Avian. The snapshots save Avian's components of bodies and colliders, and its resources that last longer than a
-//! tick.
+//! The engine Avian. The snapshots save Avian's components of bodies and colliders, and its resources that last longer
+//! than a tick.
 
 use avian2d::collider_tree::{ColliderTreeOptimization, ColliderTrees, MovedProxies};
 use avian2d::collision::collider::EnlargedAabb;

@@ -1,5 +1,5 @@
-//! An app whose physics the schedules of bevy_ggrs save and load. The benchmark runs these schedules without a session,
-//! to time each save and load.
+//! An app whose physics state the schedules of bevy_ggrs save and load. The benchmark runs these schedules itself,
+//! without a session, to time each save and load.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! bevy_lockstep2d. Steps and saves the game as the drivers of the plugin do, without an app.
+//! The engine bevy_lockstep2d. Steps and saves the game as the drivers of the plugin do, without an app.
 
 use std::collections::VecDeque;
 

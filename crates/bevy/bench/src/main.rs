@@ -1,4 +1,4 @@
-//! Measures saves and rollbacks of piles of boxes, and prints a table. Compares this plugin with bevy_rapier2d and
+//! Measures saves and rollbacks of walls of boxes, and prints a table. Compares this plugin with bevy_rapier2d and
 //! Avian, which use the snapshots of bevy_ggrs.
 
 mod avian;
@@ -19,7 +19,7 @@ use crate::engine::{DEPTH, Engine};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Ticks in which the pile comes to rest.
+/// Number of ticks in which the wall comes to rest.
 const SETTLING: usize = 300;
 /// Number of rollbacks that are measured.
 const ROLLBACKS: usize = 100;
@@ -62,7 +62,7 @@ impl Measured {
         Measured { name, engine, bytes: 0, saves, loads, rollbacks, equal: 0 }
     }
 
-    /// Plays until the pile rests, then counts the bytes of a save. The bytes include data that a tick has to copy
+    /// Plays until the wall rests, then counts the bytes of a save. The bytes include data that a tick has to copy
     /// because a save shares it.
     fn settle(&mut self) {
         (0..SETTLING).for_each(|_| self.engine.step());

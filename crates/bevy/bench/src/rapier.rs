@@ -1,4 +1,5 @@
-//! bevy_rapier2d. The snapshots save the components of its context entity, and the transforms, which Rapier reads.
+//! The engine bevy_rapier2d. The snapshots save the components of its context entity, and the transforms, which Rapier
+//! reads.
 
 use bevy::prelude::*;
 use bevy_ggrs::{ComponentSnapshotPlugin, RollbackApp, Strategy};

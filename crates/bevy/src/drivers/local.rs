@@ -12,7 +12,8 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays and records ticks at the rate of the game. A frame drops ticks beyond [`FixedTimestep::DEFAULT_TICKS_MAX`].
+/// Plays and records ticks at the rate of the game. If more than [`FixedTimestep::DEFAULT_TICKS_MAX`] ticks are due in
+/// a frame, the rest are dropped.
 pub(crate) struct LocalDriver<G: LockstepGame> {
     recording: Recording<Observed<G>>,
     timestep: FixedTimestep,

@@ -38,12 +38,13 @@ impl Transport for AnyTransport {
     }
 }
 
-/// Largest number of ticks in a frame of a peer that catches up.
+/// Largest number of ticks that a peer plays in a frame, for example to catch up.
 const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {
     peer: Peer<Observed<G>, AnyTransport>,
-    /// Time since the last tick, in ticks. It is estimated, because the session lengthens and shortens its ticks.
+    /// Estimated time since the last tick, in ticks, 0 to 1. The exact time is unknown, because the session lengthens
+    /// and shortens its ticks.
     phase: f32,
     /// Id of this peer in the session in which the last error occurred. `None` if there was no session or no error.
     failed_as: Option<PeerId>,
@@ -62,7 +63,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     ) -> Result<(), LockstepError> {
         let result = self.play(time, is_paused, inputs);
         if result.is_err() {
-            // The others would wait for a peer that exchanges packets and plays no more.
+            // If this peer went on to exchange packets but played no ticks, the others would wait for it.
             self.peer.leave();
             self.failed_as = self.id();
         }
@@ -73,7 +74,8 @@ impl<G: LockstepGame> MatchDriver<G> {
     /// joined again, after [`Peer::ask`].
     ///
     /// # Errors
-    /// The contact has refused the new request. Errors that were returned before are not returned again.
+    /// [`LockstepError::Match`] if the contact has refused the new request. Errors that were returned before are not
+    /// returned again.
     pub(crate) fn run_failed(&mut self, time: FrameTime) -> Result<bool, LockstepError> {
         let updated = self.peer.update(time.real_elapsed);
         self.synchronise();
@@ -143,8 +145,8 @@ impl<G: LockstepGame> MatchDriver<G> {
         self.without_events(|peer| peer.replay_so_far())
     }
 
-    /// Makes a file while the log is suspended. For this file, the peer plays ticks again whose events are already in
-    /// the log.
+    /// Makes a file while the log is suspended: to make it, the peer plays ticks again whose events are already in the
+    /// log.
     fn without_events(
         &mut self,
         make: impl FnOnce(&mut Peer<Observed<G>, AnyTransport>) -> Result<Vec<u8>, PeerError>,

@@ -49,7 +49,8 @@ impl<G: LockstepGame> ReplayDriver<G> {
         self.film.with_timeline_mut(|timeline| {
             let (before, mark) = (timeline.tick(), timeline.game().log().mark());
             let step = timeline.step();
-            // If a tick exceeds a limit, the timeline goes back and plays earlier ticks again.
+            // If a tick exceeds a limit, the timeline loads an earlier state and plays up to `before` again. The log
+            // then returns to `mark`.
             if step.is_err() && timeline.tick() == before {
                 let game = timeline.game();
                 game.log().return_to(mark, game.world());
@@ -62,7 +63,8 @@ impl<G: LockstepGame> ReplayDriver<G> {
         self.film.with_timeline_mut(|timeline| {
             let left = timeline.game().log().leave(timeline.game().world());
             timeline.game().log().suspend();
-            // An error may leave the game at another tick than the requested one.
+            // After an error, the game may be at another tick than the requested one, so the log takes the tick of the
+            // timeline.
             let sought = timeline.seek(tick);
             let game = timeline.game();
             game.log().relocate(timeline.tick(), game.world(), left);

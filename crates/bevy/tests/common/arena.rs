@@ -136,7 +136,7 @@ impl Game for Arena {
     }
 }
 
-/// Directions change every quarter of a second, shots and jumps come now and then.
+/// The buttons of a player in a tick. The direction changes every 15 ticks, and shots and jumps come now and then.
 pub fn pad_at(seed: u64, tick: u64) -> u8 {
     let mix = |n: u64| {
         let n = n.wrapping_add(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

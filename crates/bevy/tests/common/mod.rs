@@ -92,7 +92,7 @@ pub fn check_views(app: &mut App) {
     assert_eq!(views.iter().count(), count);
 }
 
-/// Events of the last tick, in the order of the messages, independently of the plugin.
+/// Events of the last tick, in the order in which the plugin sends them. Read from the world without the plugin.
 pub fn events_of(world: &Physics) -> Vec<WorldEvent> {
     let events = world.events();
     let mut found = Vec::new();

@@ -1,7 +1,7 @@
 //! Runs a signalling server and a headless player that hosts the room `bot`, for the page `index.html#bot`.
 //!
-//! `bot [PORT [TICKS]]`: the server listens on `PORT` (3536 by default). With `TICKS` the match ends after that many
-//! ticks, its replay is verified, and the hash of its last state printed.
+//! `bot [PORT [TICKS]]`: the server listens on `PORT` (3536 by default). With `TICKS`, the match ends after this number
+//! of ticks. The program then verifies the replay and prints the hash of the last state.
 
 use std::net::Ipv4Addr;
 use std::thread::sleep;

@@ -6,7 +6,7 @@ use lockstep2d::peer::PeerIdentity;
 
 use crate::Arguments;
 
-/// Key in the storage of the tab.
+/// Name under which the storage of the tab keeps the key of the player's identity.
 const IDENTITY: &str = "identity";
 
 pub fn arguments() -> Arguments {
@@ -42,7 +42,7 @@ fn kept_key(new: u64) -> u64 {
     };
     let kept = storage.get_item(IDENTITY).ok().flatten().and_then(|text| text.parse().ok());
     let key = kept.unwrap_or(new);
-    // Without storage, a reloaded page is another player.
+    // If the key cannot be stored, a reloaded page counts as another player.
     let _ = storage.set_item(IDENTITY, &key.to_string());
     key
 }
