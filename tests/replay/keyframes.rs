@@ -87,7 +87,7 @@ fn a_tick_after_a_keyframe_is_within_the_limits_of_verify() {
     let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 20).unwrap();
     for tick in 0..200 {
         let body = |def: BodyDef, y| BodyDef { position: Vec2::new(Fx::from(tick), Fx::from(y)), ..def };
-        let spawn = |body| Command::Spawn { body, shapes: vec![ball.clone()] };
+        let spawn = |body| Command::Spawn { body, shapes: vec![ball] };
         let command = if tick % 4 == 0 { body(BodyDef::dynamic(), 1) } else { body(BodyDef::fixed(), 0) };
         recording.step(&[vec![spawn(command)]]).unwrap();
     }
