@@ -65,7 +65,8 @@ impl<G: Game> ReplayComparison<'_, '_, G> {
         self.a.tick().min(self.b.tick())
     }
 
-    /// Plays a tick. With equal setups, both sides start from the state of A's game.
+    /// Plays a tick on both sides. If the setups are equal, the states before the tick are equal too: with equal inputs
+    /// only A's game is played, otherwise B's game first loads the state of A's game.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;

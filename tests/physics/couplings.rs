@@ -49,7 +49,8 @@ fn a_body_that_falls_into_its_rope_does_not_rebound() {
         bench.run(120, |tick, world| {
             let body = world.body(body).expect("there");
             let (y, up) = (body.position().y, body.velocity().y);
-            // Before that, the body falls freely for sqrt(2 * 4 / 10) = 0.89 s.
+            // The rope becomes taut at y = 0. Until then the body falls freely for 4 m, which takes sqrt(2 * 4 / 10) =
+            // 0.89 s.
             assert!(y > fx!(-0.005), "{what}, tick {tick}: stretched to {y} m");
             assert!(up < fx!(0.1), "{what}, tick {tick}: rebounds at {up} m/s");
         });

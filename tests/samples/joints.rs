@@ -64,10 +64,11 @@ fn a_distance_joint_is_a_spring_with_limits() {
         fx!(0.005),
     );
     near(hang(Distance::new().limit(fx!(0.5), fx!(2)), 300), fx!(2), fx!(0.005));
-    // The ball weighs 39.3 N. A spring that only pushes does not hold the ball, which falls by h = g t^2 / 2.
+    // A spring that only pushes does not hold the ball. In one second the ball falls by g t^2 / 2 = 5 m, so the length
+    // grows from 1 m to 6 m.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
-    // This spring pulls with at most half the weight. It reaches this force when stretched by half its sag, after a
+    // This spring pulls with at most 19.635 N, half the weight of the ball. It reaches this force when stretched by half its sag, after a
     // sixth of its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s².
     let fallen =
         hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(-19.635), fx!(100)), 60);

@@ -110,7 +110,8 @@ export class Session {
             } else if (kind === "refused" && reason !== "notReady") {
                 this.error = `refused: ${reason}`;
             } else if (kind === "state" && tick > 0) {
-                // The game has the state of a match that has begun.
+                // The page has joined a match that had already begun. It lacks the inputs of the first ticks, so it
+                // cannot record a replay.
                 this.recording = undefined;
                 this.#confirmed = tick;
             }

@@ -68,8 +68,8 @@ pub(crate) enum TimeOfImpact {
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
     /// The shapes overlap at the start, too deeply for a reliable direction of separation. With
-    /// [`StartPolicy::Report`], any overlap is too deep. With [`StartPolicy::Protect`], any contact of two shapes
-    /// without an inner radius is too deep.
+    /// [`StartPolicy::Report`], any overlap is too deep. With [`StartPolicy::Protect`], the limit is three quarters of
+    /// the inner radius of B, or of A if B has none. If neither has an inner radius, the limit is 0.
     Overlapped,
     /// The search gave up, because it took too many steps, because it made no progress, or because a shape rotates too
     /// far. Before this fraction of the tick, the shapes do not come within the target.

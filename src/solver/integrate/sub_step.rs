@@ -29,8 +29,9 @@ impl SubStep {
     }
 
     /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund, P.
-    /// Montgomery, 1994). The dividend `n` is below 2^48. The product of `n`, the reciprocal and `d` exceeds `2^64 n`
-    /// by less than `2^48 d < 2^64`, so that the quotient does not reach the next integer.
+    /// Montgomery, 1994). The reciprocal of the divisor `d` is `2^64 / d` rounded up, so their product
+    /// exceeds 2^64 by less than `d`. Multiplied by a dividend below 2^48, the excess is below 2^64, because `d` is below
+    /// 2^16. The quotient therefore does not reach the next integer.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,

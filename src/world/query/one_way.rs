@@ -44,8 +44,8 @@ impl Walk<'_> {
         listed.iter().all(Option::is_some) || listed.iter().flatten().any(|&other| self.is_one(id, other))
     }
 
-    /// Whether two shapes are one obstacle: the same shape, or one-sided links of one body. A character that is passing
-    /// through one link of a chain comes to the next link from the side.
+    /// Whether two shapes are one obstacle: the same shape, or one-sided links of one body. A character that passes
+    /// through one link of a chain also meets the end of the next link, and must pass through that link too.
     fn is_one(&self, a: ShapeId, b: ShapeId) -> bool {
         let link_of = |id| self.world.shape(id).filter(|&shape| is_one_sided(shape)).map(Shape::body);
         a == b || link_of(a).is_some() && link_of(a) == link_of(b)

@@ -128,7 +128,8 @@ impl World {
         let others =
             if planes.len() > 1 { overlapping.map(off).collect() } else { SmallVec::<[_; 4]>::new() };
         let lifts: SmallVec<[Vec2<Fx>; 4]> = core::iter::once(out).chain(others).collect();
-        // From a resting position, the way to an obstacle may be longer by up to twice the largest displacement.
+        // A lifted shape may have a longer way to an obstacle than the shape at its own place. The casts of lifted shapes
+        // are therefore longer by twice the longest lift.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let furthest = lifts.iter().map(|lift| lift.length()).max().unwrap_or(Fx::ZERO);
         let beyond = forwards.scale(furthest * 2);

@@ -81,7 +81,7 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Measures the rows of the table. Without the full sweep, measures only the first row.
+/// Measures the rows of the table in docs/VERIFYING.md: all of them with `LOCKSTEP2D_LONG=1`, otherwise only the first.
 #[test]
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);

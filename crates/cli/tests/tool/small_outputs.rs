@@ -64,7 +64,7 @@ fn kill_often(arguments: &[&str], rounds: u64, prepare: impl Fn(), is_new: impl 
     panic!("{old} kills before and {new} after the output was written");
 }
 
-/// A folder with a replay and a key for each name.
+/// A folder with one replay, `a.replay`, and with a key for each owner.
 fn keys(test: &str, owners: &[&str]) -> Folder {
     let folder = Folder::new(test);
     folder.write("a.replay", &fs::read(golden("box_stack")).unwrap());

@@ -14,7 +14,7 @@ use crate::raster::Image;
 pub(super) struct Gif<W: Write> {
     pace: Pace,
     frames: u64,
-    /// Number of pixels of each colour in all announced frames together.
+    /// Number of pixels of each colour in all frames passed to [`Gif::expect`].
     samples: Counts,
     state: State<W>,
 }

@@ -11,10 +11,10 @@
 //!
 //! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by
 //! `impulseScale K p`. Its softness is therefore part of its scale `R`, and its `S` in the equations of
-//! `mod.rs` is 1:
+//! `mod.rs` is 1. With a lower triangular `T`:
 //!
 //! ```text
-//! impulseScale I + massScale K = R' R'^T,   H = sqrt(massScale a) R'^-1 J,   R = sqrt(massScale) R'
+//! impulseScale I + massScale K = T T^T,   H = sqrt(massScale a) T^-1 J,   R = sqrt(massScale) T
 //! ```
 
 use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};

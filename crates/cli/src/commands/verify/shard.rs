@@ -4,10 +4,10 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// One of `count` parts, numbered from 1.
+/// One of `count` parts of the files, numbered from 1.
 ///
-/// The part of a file depends only on a hash of its path, relative to the folder that is an argument of the command.
-/// Other files do not change it. So if several processes list a changing folder at different times, exactly one of them
+/// The part to which a file belongs depends only on a hash of the file's path (relative to the folder that is an argument
+/// of the command), not on the other files. So if several processes list a changing folder at different times, exactly one of them
 /// takes each file that all of them find. The parts differ in size: with about 1000 files per part, the standard
 /// deviation is about 30 files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
