@@ -6,11 +6,11 @@ use crate::game::LockstepGame;
 
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
-/// A frame may play no tick or several. A *held* input, such as a direction or a button that is down, is the input of
-/// every tick until it changes. A *once* input, such as a jump or a list of commands, replaces the held input in the
-/// next played tick only. So a press counts once, even if a frame plays several ticks. During a pause, a *once* input
-/// waits for the next tick. In a replay, for a spectator and after an error, it is removed in the same frame. When
-/// another game begins, it is removed before the systems of [`LockstepSystems::Inputs`](crate::LockstepSystems) run.
+/// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
+/// that are down. A *once* input replaces the held input for the next played tick alone: a jump, a list of commands. So
+/// a press counts once. During a pause, a *once* input waits for the next tick. In a replay, for a spectator and after
+/// an error, it is removed in the same frame. When another game begins, it is removed before the systems of
+/// [`LockstepSystems::Inputs`](crate::LockstepSystems) run and, if such a system replaces the game, after them.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;

@@ -133,9 +133,11 @@ fn views_at<'a>(
 #[derive(Resource, Default)]
 struct HoldingPointer {
     ray: Option<RayId>,
-    /// Body and position of another press by the pointer that holds a body. If the pointer was also released in this
-    /// frame, it holds this body instead.
+    /// Body and position of the last press in this frame. The pointer may have been released before this press, and
+    /// `ray` may be of an earlier press.
     next: Option<(RayId, BodyId, Vec2)>,
+    /// Whether a view has taken the latest press. Ancestors of this view receive the press after it.
+    is_taken: bool,
 }
 
 /// A press on a view or on one of its children starts to drag the body of the view.
@@ -146,6 +148,13 @@ fn grab(
     mut hand: ResMut<DragHand>,
     mut holding: ResMut<HoldingPointer>,
 ) {
+    // An entity that is pressed receives the press before its ancestors.
+    if press.entity == press.original_event_target() {
+        holding.is_taken = false;
+    }
+    if holding.is_taken {
+        return;
+    }
     let Some(world) = lockstep.as_ref().and_then(|lockstep| lockstep.world()) else { return };
     let Ok(body) = views.get(press.entity).map(|view| view.body()) else { return };
     let is_dynamic = world.body(body).is_some_and(|body| body.is_dynamic());
@@ -158,13 +167,11 @@ fn grab(
             hand.hold_body(body, at.xy());
             holding.ray = Some(ray);
         }
-        Some(held) if held.pointer == ray.pointer => {
-            // The event of a press also reaches the ancestors of the pressed view, one after the other. Only the first
-            // press is kept.
-            holding.next.get_or_insert((ray, body, at.xy()));
-        }
+        Some(held) if held.pointer != ray.pointer => return,
         Some(_) => {}
     }
+    holding.next = Some((ray, body, at.xy()));
+    holding.is_taken = true;
 }
 
 /// Moves the hand with its pointer. Releases the body when the button goes up or the pointer is cancelled.

@@ -1,7 +1,7 @@
 //! The systems of the plugin.
 
 use bevy::ecs::entity_disabling::Disabled;
-use bevy::ecs::query::Allow;
+use bevy::ecs::query::{Allow, SpawnDetails};
 use bevy::math::Quat;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
@@ -63,21 +63,30 @@ pub(crate) fn write_views<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     mut views: ResMut<BodyViews>,
     (settings, time): (Res<LockstepSettings>, Res<Time<Real>>),
-    all: Query<(Entity, Ref<BodyView>), Allow<Disabled>>,
+    all: Query<(Entity, Ref<BodyView>, SpawnDetails), Allow<Disabled>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // The game may have despawned a view, or removed its component.
-    views.retain(|view| all.get(view.entity).is_ok_and(|(_, shown)| shown.body() == view.body));
-    let is_new_game = views.begin_game(lockstep.number());
-    // Entities that the game has prepared as views. Most are not in the table `views` yet. An entity that was a view in
-    // the former game is still in the table; it counts as prepared if its `BodyView` was inserted again for the new game.
-    let is_prepared = |(entity, view): &(Entity, Ref<BodyView>)| {
-        let is_inserted_again = view.is_changed() && !view.is_added();
-        views.entity(view.body()) != Some(*entity) || (is_new_game && is_inserted_again)
+    let mut inserted_again = Vec::new();
+    views.retain(|view| {
+        // The game may have despawned a view, or removed its component.
+        let Ok((entity, shown, spawned)) = all.get(view.entity) else { return false };
+        // `spawn_view` has inserted the component in the tick in which it has spawned the entity.
+        if shown.is_changed() && shown.last_changed() != spawned.spawn_tick() {
+            inserted_again.push(entity);
+        }
+        shown.body() == view.body
+    });
+    views.prepare(inserted_again);
+    let former = views.begin_game(lockstep.number());
+    // Entities that the game has prepared as views. Most are not in the table `views` yet. Views of the former game are
+    // still in the table; those in `former` are prepared.
+    let is_prepared = |entity: Entity, body: BodyId| {
+        views.entity(body) != Some(entity) || former.as_ref().is_some_and(|former| former.contains(&entity))
     };
+    let all = all.iter().map(|(entity, view, _)| (view.body(), entity));
     let prepared: HashMap<BodyId, Entity> =
-        all.iter().filter(is_prepared).map(|(entity, view)| (view.body(), entity)).collect();
-    if is_new_game {
+        all.filter(|(body, entity)| is_prepared(*entity, *body)).collect();
+    if former.is_some() {
         for view in views.take_all().into_iter().filter(|view| prepared.get(&view.body) != Some(&view.entity))
         {
             commands.entity(view.entity).try_despawn();

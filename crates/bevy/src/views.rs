@@ -1,5 +1,6 @@
 //! [`BodyView`] and [`BodyViews`]: the entities that show bodies.
 
+use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::{Component, Entity, Reflect, ReflectComponent, Resource, Transform};
 use lockstep2d::body::{BodyId, BodyKind, ShapeDef, ShapeId};
 use lockstep2d::world::World;
@@ -10,9 +11,9 @@ use crate::smoothing::Offset;
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
-/// If you add this component to an entity for a body that has no view, the entity becomes the view of this body, as
-/// soon as the body exists. If a view is despawned or loses this component, the body has another view from the next
-/// frame on.
+/// If this component is added to an entity while the body has no view, that entity becomes the view when the body
+/// appears. If a view is despawned or loses this component, the body has another view from the next frame on. Views are
+/// despawned when another game begins, except those into which this component was inserted again for that game.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A rollback or a seek may
 /// replace a body by another body. The view is kept if both have the same id, kind, user data and shapes.
@@ -49,6 +50,9 @@ pub struct BodyViews {
     frame: u32,
     /// Number of the game whose bodies are shown: see `Lockstep::number`.
     game: Option<u64>,
+    /// Entities into which the game has inserted a [`BodyView`] again while they were views. They are prepared as views
+    /// of the next game.
+    prepared: EntityHashSet,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -72,9 +76,15 @@ impl BodyViews {
         self.view(body).map(|view| view.entity)
     }
 
-    /// Sets the game whose bodies are shown. Returns whether the game has changed.
-    pub(crate) fn begin_game(&mut self, number: u64) -> bool {
-        self.game.replace(number) != Some(number)
+    /// Sets the game whose bodies are shown. If the game has changed, returns the views of the former game that are
+    /// prepared as views of the new game.
+    pub(crate) fn begin_game(&mut self, number: u64) -> Option<EntityHashSet> {
+        (self.game.replace(number) != Some(number)).then(|| core::mem::take(&mut self.prepared))
+    }
+
+    /// Marks views as prepared for the next game.
+    pub(crate) fn prepare(&mut self, entities: Vec<Entity>) {
+        self.prepared.extend(entities);
     }
 
     /// The view of the body of a shape.
@@ -101,7 +111,7 @@ impl BodyViews {
     }
 
     /// Drops the views for which `keep` is false. Their entities stay.
-    pub(crate) fn retain(&mut self, keep: impl Fn(&View) -> bool) {
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&View) -> bool) {
         for slot in &mut self.slots {
             slot.take_if(|view| !keep(view));
         }

@@ -9,9 +9,9 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::*;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
-use lockstep2d::peer::{LinkConditions, Network, PeerEvent, PeerIdentity, PeerOptions};
+use lockstep2d::peer::{LinkConditions, Network, PeerError, PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::replay::{Limits, Recording};
-use lockstep2d::session::Event;
+use lockstep2d::session::{Event, Status};
 use serde::{Deserialize, Serialize};
 
 const TICK: Duration = Duration::from_nanos(16_666_667);
@@ -19,6 +19,8 @@ const TICK: Duration = Duration::from_nanos(16_666_667);
 thread_local! {
     /// Number that each tick adds to the count. A replay that was recorded with another number diverges.
     static STEP: Cell<u64> = const { Cell::new(1) };
+    /// Number that is added to a state that is loaded.
+    static LOADED: Cell<u64> = const { Cell::new(0) };
 }
 
 /// A game that adds a number to a count in each tick. Its inputs are lists of bytes of any length.
@@ -50,7 +52,7 @@ impl Game for Count {
         self.clone()
     }
     fn load(&mut self, save: &Count) {
-        self.clone_from(save);
+        self.0 = save.0 + LOADED.get();
     }
     fn work(&self, _: &[Vec<u8>]) -> u64 {
         1
@@ -115,6 +117,49 @@ fn a_peer_with_an_error_leaves_and_can_join_again() {
     assert!(lockstep(&mut guest).failure().is_none());
     let difference = lockstep(&mut host).tick().abs_diff(lockstep(&mut guest).tick());
     assert!(difference < 20 && lockstep(&mut guest).confirmed() > tick + 200, "{difference}");
+    assert_eq!(lockstep(&mut guest).seats(), [1]);
+}
+
+#[test]
+fn a_peer_that_cannot_use_the_state_of_its_next_session_leaves_it() {
+    let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
+    let patience = Duration::from_secs(600);
+    let options = PeerOptions { input_bytes: Some(8), patience, ..PeerOptions::rollback() };
+    let me = |number: u64| PeerIdentity::new([number, number + 10, number + 20, number + 30]);
+    let contact = Network::address(1);
+    let mut host = app(Lockstep::host(&(), options, me(1), network.port(1)).unwrap());
+    let mut guest = app(Lockstep::join(&(), options, me(2), network.port(2), contact).unwrap());
+    let play = |host: &mut App, guest: &mut App, frames: u32, loaded: u64| {
+        let mut failures = Vec::new();
+        for _ in 0..frames {
+            network.set_time(network.time() + TICK);
+            host.update();
+            LOADED.set(loaded);
+            guest.update();
+            LOADED.set(0);
+            failures.extend(drained::<LockstepFailed>(guest).into_iter().map(|LockstepFailed(error)| error));
+        }
+        failures
+    };
+    assert!(play(&mut host, &mut guest, 200, 0).is_empty());
+    *guest.world_mut().resource_mut::<Inputs<Count>>().once(0) = vec![1; 100];
+    let failures = play(&mut host, &mut guest, 120, 0);
+    assert!(matches!(failures[..], [LockstepError::Match(PeerError::InputLength { .. })]), "{failures:?}");
+    for _ in 0..2 {
+        lockstep(&mut guest).peer_mut().unwrap().ask(contact);
+        let failures = play(&mut host, &mut guest, 240, 1);
+        assert!(matches!(failures[..], [LockstepError::Match(PeerError::State { .. })]), "{failures:?}");
+        let failure = lockstep(&mut guest).failure().cloned();
+        assert!(matches!(failure, Some(LockstepError::Match(PeerError::State { .. }))), "{failure:?}");
+        let status = lockstep(&mut guest).peer().unwrap().status();
+        assert!(matches!(status, Some(Status::Left | Status::Closed)), "{status:?}");
+        let tick = lockstep(&mut host).tick();
+        play(&mut host, &mut guest, 60, 0);
+        assert!(lockstep(&mut host).tick() > tick + 50, "the host waits for the guest");
+    }
+    lockstep(&mut guest).peer_mut().unwrap().ask(contact);
+    assert!(play(&mut host, &mut guest, 240, 0).is_empty());
+    assert!(lockstep(&mut guest).failure().is_none());
     assert_eq!(lockstep(&mut guest).seats(), [1]);
 }
 

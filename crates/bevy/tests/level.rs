@@ -53,9 +53,20 @@ fn start(app: &mut App) -> [Entity; 3] {
     entities
 }
 
+/// Starts a game whose level has no entities, so that the plugin spawns the views.
+fn start_without_views(app: &mut App) {
+    for entity in start(app) {
+        app.world_mut().despawn(entity);
+    }
+}
+
 fn start_level(app: &mut App) {
     let commands = build_level(app.world_mut(), Config::default()).unwrap();
     assert_eq!(commands.len(), 4);
+    start_game(app, commands);
+}
+
+fn start_game(app: &mut App, commands: Vec<Command>) {
     let setup = SandboxSetup { commands, ..SandboxSetup::default() };
     app.insert_resource(Lockstep::<Sandbox>::local(&setup).unwrap());
 }
@@ -82,27 +93,83 @@ fn entities_become_the_views_of_the_bodies_that_they_describe() {
     assert!(bar.position().y < fx!(-0.3));
 }
 
-#[test]
-fn entities_of_a_level_become_the_views_of_its_next_game() {
-    let mut app = sandbox_app();
-    let entities = start(&mut app);
-    (0..30).for_each(|_| app.update());
-    // Describes the level again, with the same entities.
+/// Describes the level again, with the same entities.
+fn describe_again(app: &mut App, [ground, bar, ball]: [Entity; 3]) {
     let again = spawn_level(app.world_mut()).unwrap();
-    for (entity, other) in entities.into_iter().zip(again) {
+    for (entity, other) in [ground, bar, ball].into_iter().zip(again) {
         let body = app.world_mut().entity_mut(other).take::<SpawnBody>().unwrap();
         app.world_mut().entity_mut(entity).insert(body);
         app.world_mut().despawn(other);
     }
-    let [ground, bar, ball] = entities;
     let joint = SpawnJoint::new([ground, bar], Revolute::new(), (fx!(0), fx!(0)));
     app.world_mut().entity_mut(ball).insert(joint);
-    start_level(&mut app);
+}
+
+/// Labels of all views, in the order of their bodies.
+fn labels(app: &mut App) -> Vec<Option<&'static str>> {
+    let mut query = app.world_mut().query::<(&BodyView, Option<&Label>)>();
+    let mut found: Vec<_> = query.iter(app.world()).collect();
+    found.sort_by_key(|(view, _)| view.body().index());
+    found.iter().map(|(_, label)| label.map(|label| label.0)).collect()
+}
+
+#[test]
+fn entities_of_a_level_become_the_views_of_its_next_game() {
+    // Number of frames between the description of the level and the start of its game.
+    for frames in 0..3 {
+        let mut app = sandbox_app();
+        let entities = start(&mut app);
+        (0..30).for_each(|_| app.update());
+        describe_again(&mut app, entities);
+        let commands = build_level(app.world_mut(), Config::default()).unwrap();
+        (0..frames).for_each(|_| app.update());
+        start_game(&mut app, commands);
+        for _ in 0..3 {
+            app.update();
+            assert_eq!(labels(&mut app), ["ground", "bar", "ball"].map(Some), "after {frames} frames");
+        }
+        // The level is not described for the third game.
+        start_without_views(&mut app);
+        (0..3).for_each(|_| app.update());
+        assert_eq!(labels(&mut app), [None; 3], "after {frames} frames");
+    }
+}
+
+#[test]
+fn views_that_change_their_bodies_become_views_of_the_next_game() {
+    let mut app = sandbox_app();
+    let entities = start(&mut app);
+    (0..30).for_each(|_| app.update());
+    let [ground, bar, ball] = entities.map(|entity| *app.world().get::<BodyView>(entity).unwrap());
+    for (entity, view) in entities.into_iter().zip([bar, ball, ground]) {
+        app.world_mut().entity_mut(entity).insert(view);
+    }
+    app.update();
+    start_without_views(&mut app);
     (0..3).for_each(|_| app.update());
-    let mut labels: Vec<_> = app.world_mut().query::<(&BodyView, &Label)>().iter(app.world()).collect();
-    labels.sort_by_key(|(view, _)| view.body().index());
-    assert_eq!(labels.iter().map(|(_, label)| label.0).collect::<Vec<_>>(), ["ground", "bar", "ball"]);
-    assert_eq!(app.world_mut().query::<&BodyView>().iter(app.world()).count(), 3);
+    assert_eq!(labels(&mut app), ["ball", "ground", "bar"].map(Some));
+}
+
+#[test]
+fn a_view_whose_component_is_removed_and_inserted_becomes_a_view_of_the_next_game() {
+    // Number of frames after the start of the first game.
+    for frames in 1..4 {
+        let mut app = sandbox_app();
+        start_without_views(&mut app);
+        (0..frames).for_each(|_| app.update());
+        assert_eq!(labels(&mut app), [None; 3]);
+        let (body, ball) = app.world().resource::<BodyViews>().iter().last().unwrap();
+        app.world_mut().entity_mut(ball).insert(Label("ball"));
+        start_without_views(&mut app);
+        app.world_mut().entity_mut(ball).remove::<BodyView>().insert(BodyView::new(body));
+        for _ in 0..3 {
+            app.update();
+            assert_eq!(labels(&mut app), [None, None, Some("ball")], "after {frames} frames");
+        }
+        start_without_views(&mut app);
+        app.update();
+        assert_eq!(labels(&mut app), [None; 3], "after {frames} frames");
+    }
 }
 
 #[test]

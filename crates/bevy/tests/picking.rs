@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use bevy::camera::{Camera, NormalizedRenderTarget};
+use bevy::picking::backend::HitData;
 use bevy::picking::backend::ray::{RayId, RayMap};
-use bevy::picking::events::{Click, Pointer};
+use bevy::picking::events::{Click, Pointer, Press};
 use bevy::picking::pointer::{Location, PointerAction, PointerButton, PointerId, PointerInput};
 use bevy::picking::{InteractionPlugin, Pickable, PickingPlugin, PickingSettings};
 use bevy::prelude::*;
@@ -44,6 +45,8 @@ impl Screen {
             .init_resource::<Clicked>()
             .add_observer(click);
         app.world_mut().spawn(PointerId::Mouse);
+        // Without this component, Bevy does not pass the events of pointers to parents.
+        app.world_mut().register_component::<Window>();
         let camera = app.world_mut().spawn(Camera::default()).id();
         (0..3).for_each(|_| app.update());
         let bodies: Vec<BodyId> = app.world().resource::<BodyViews>().iter().map(|(body, _)| body).collect();
@@ -65,11 +68,28 @@ impl Screen {
 
     fn act_in_a_frame(&mut self, actions: &[PointerAction]) {
         for action in actions {
-            let target = NormalizedRenderTarget::None { width: 100, height: 100 };
-            let location = Location { target, position: Vec2::ZERO };
-            self.app.world_mut().write_message(PointerInput::new(PointerId::Mouse, location, action.clone()));
+            self.app.world_mut().write_message(PointerInput::new(PointerId::Mouse, location(), *action));
         }
         self.app.update();
+    }
+
+    /// Sends an event as if the pointer was pressed on an entity.
+    fn press_event(&mut self, entity: Entity) {
+        let hit = HitData::new(self.camera, 0.0, Some(Vec3::ZERO), None);
+        let press = Press { button: PointerButton::Primary, hit, count: 1 };
+        self.app.world_mut().trigger(Pointer::new(PointerId::Mouse, location(), press, entity));
+    }
+
+    /// Adds a ball to the left of the first ball, pauses the game and returns the new body.
+    fn add_ball(&mut self) -> BodyId {
+        let spawn = Command::Spawn {
+            body: BodyDef::dynamic().position((fx!(-3), fx!(1.5))),
+            shapes: vec![ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())],
+        };
+        self.app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(spawn);
+        self.app.update();
+        self.app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
+        self.app.world().resource::<BodyViews>().iter().nth(2).unwrap().0
     }
 
     fn click(&mut self) {
@@ -89,6 +109,10 @@ impl Screen {
     fn held(&self) -> Option<BodyId> {
         self.app.world().resource::<DragHand>().body()
     }
+}
+
+fn location() -> Location {
+    Location { target: NormalizedRenderTarget::None { width: 100, height: 100 }, position: Vec2::ZERO }
 }
 
 fn click(click: On<Pointer<Click>>, views: Query<&BodyView>, mut clicked: ResMut<Clicked>) {
@@ -186,16 +210,12 @@ fn a_pointer_that_is_released_and_pressed_in_one_frame_holds_what_it_presses() {
     use PointerAction::{Press, Release};
     const LEFT: PointerButton = PointerButton::Primary;
     let mut screen = Screen::new();
-    let spawn = Command::Spawn {
-        body: BodyDef::dynamic().position((fx!(-3), fx!(1.5))),
-        shapes: vec![ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())],
-    };
-    screen.app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(spawn);
-    screen.app.update();
-    screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().pause();
-    let second = screen.app.world().resource::<BodyViews>().iter().nth(2).unwrap().0;
-    screen.point_at(20.0, 15.0);
+    let second = screen.add_ball();
+    // A point of the platform, which is not held.
+    screen.point_at(-30.0, 5.0);
     screen.act(Press(LEFT));
+    screen.point_at(20.0, 15.0);
+    screen.act_in_a_frame(&[Release(LEFT), Press(LEFT)]);
     assert_eq!(screen.held(), Some(screen.bodies[1]));
     screen.point_at(-30.0, 15.0);
     screen.act_in_a_frame(&[Release(LEFT), Press(LEFT)]);
@@ -208,4 +228,38 @@ fn a_pointer_that_is_released_and_pressed_in_one_frame_holds_what_it_presses() {
     assert_eq!(screen.held(), None);
     screen.act(Press(LEFT));
     assert_eq!(screen.held(), Some(screen.bodies[1]));
+}
+
+/// The view of a body is a child of the view of another body.
+#[test]
+fn a_press_on_a_view_does_not_hold_the_parent_of_the_view() {
+    use PointerAction::{Press, Release};
+    const LEFT: PointerButton = PointerButton::Primary;
+    let mut screen = Screen::new();
+    let parent = screen.add_ball();
+    let [platform, ball] = screen.bodies;
+    let view = |screen: &Screen, body| screen.app.world().resource::<BodyViews>().entity(body).unwrap();
+    let (parent_view, ball_view) = (view(&screen, parent), view(&screen, ball));
+    screen.app.world_mut().entity_mut(ball_view).insert(ChildOf(parent_view));
+    screen.point_at(20.0, 15.0);
+    screen.act(Press(LEFT));
+    assert_eq!(screen.held(), Some(ball));
+    screen.act_in_a_frame(&[Release(LEFT), Press(LEFT)]);
+    assert_eq!(screen.held(), Some(ball));
+    screen.act(Release(LEFT));
+    screen.act_in_a_frame(&[Press(LEFT), Release(LEFT), Press(LEFT)]);
+    assert_eq!(screen.held(), Some(ball), "it is pressed twice in a frame");
+    screen.act(Release(LEFT));
+    assert_eq!(screen.held(), None);
+    // The view of the platform is pressed, and then a child without a body of the view of the ball.
+    let child = screen.app.world_mut().spawn(ChildOf(ball_view)).id();
+    let platform_view = view(&screen, platform);
+    screen.point_at(0.0, 500.0);
+    for presses in [[ball_view, parent_view], [parent_view, ball_view], [platform_view, child]] {
+        presses.into_iter().for_each(|entity| screen.press_event(entity));
+        screen.act_in_a_frame(&[Press(LEFT), Release(LEFT), Press(LEFT)]);
+        let last = if presses[1] == parent_view { parent } else { ball };
+        assert_eq!(screen.held(), Some(last), "{presses:?}");
+        screen.act(Release(LEFT));
+    }
 }

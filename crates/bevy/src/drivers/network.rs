@@ -63,9 +63,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     ) -> Result<(), LockstepError> {
         let result = self.play(time, is_paused, inputs);
         if result.is_err() {
-            // If this peer went on to exchange packets but played no ticks, the others would wait for it.
-            self.peer.leave();
-            self.failed_as = self.id();
+            self.give_up();
         }
         result
     }
@@ -74,17 +72,29 @@ impl<G: LockstepGame> MatchDriver<G> {
     /// joined again, after [`Peer::ask`].
     ///
     /// # Errors
-    /// [`LockstepError::Match`] if the contact has refused the new request. Errors that were returned before are not
-    /// returned again.
+    /// The contact has refused the new request, or this peer has joined again and cannot continue. In the second case
+    /// it leaves again. Errors that were returned before are not returned again.
     pub(crate) fn run_failed(&mut self, time: FrameTime) -> Result<bool, LockstepError> {
         let updated = self.peer.update(time.real_elapsed);
         self.synchronise();
+        let has_joined = self.id().is_some_and(|id| Some(id) != self.failed_as);
         match updated {
-            Ok(()) => Ok(self.id().is_some_and(|id| Some(id) != self.failed_as)),
+            Ok(()) => Ok(has_joined),
+            // For example, the state that begins the new session is not a state of this game.
+            Err(error) if has_joined => {
+                self.give_up();
+                Err(error.into())
+            }
             Err(error @ (PeerError::Refused { .. } | PeerError::Parameters(_))) => Err(error.into()),
             // An error that stops the peer occurs again in each update.
             Err(_) => Ok(false),
         }
+    }
+
+    /// Leaves the session after an error. The others would wait for a peer that exchanges packets and plays no more.
+    fn give_up(&mut self) {
+        self.peer.leave();
+        self.failed_as = self.id();
     }
 
     /// Id of this peer in its session.
