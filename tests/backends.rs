@@ -127,7 +127,10 @@ fn faulty_world(seed: u64) -> World {
         let mut last = None;
         let floor = fx!(10) * row;
         let ground = BodyDef::fixed().position((fx!(0), floor - fx!(1)));
-        world.spawn(&ground, &[rectangle(fx!(100), fx!(1))]).expect("a valid body");
+        // Bodies of up to 395 m/s bounce on every other floor.
+        let floor_shape =
+            rectangle(fx!(100), fx!(1)).restitution(if row % 2 == 0 { fx!(0.8) } else { fx!(0) });
+        world.spawn(&ground, &[floor_shape]).expect("a valid body");
         for column in 0..38 {
             let x = fx!(5) * column - fx!(95);
             let body = BodyDef::dynamic().angle(Angle::from_radians(rng.range(fx!(-0.01), fx!(0.01))));

@@ -343,10 +343,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Sends the request to join to the participant with this address, for example if an earlier request was not
-    /// answered. Discards a session in progress, its events, and the end that [`Peer::end_at`] has set. After a session
-    /// or a refusal, this peer has another [`PeerId`].
+    /// answered. Discards a session in progress, its events, and the end that [`Peer::end_at`] has set for it. After a
+    /// session or a refusal, this peer has another [`PeerId`].
     pub fn ask(&mut self, contact: Address) {
-        (self.failure, self.end) = (None, None);
+        self.failure = None;
+        if self.endpoint.session().is_some() {
+            self.end = None;
+        }
         self.events.clear();
         self.endpoint.ask(contact);
     }

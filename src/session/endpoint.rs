@@ -9,11 +9,12 @@ use super::contacts::Contacts;
 use super::guests::Guests;
 use super::id::{Key, PeerId, Tick};
 use super::join_packet::{ADDRESS_LIST_MAX, JoinPacket, OFFER_BYTES_MAX, RefusalReason};
+use super::phase::Phase;
 use super::routes::{Routes, token};
 use super::siphash::Secret;
 use super::start_state::StartState;
 use super::state::{Role, Session};
-use super::transfer::{Download, Pinned};
+use super::transfer::Pinned;
 use super::view::View;
 
 /// Largest accepted download in bytes: the game's state, the view and the addresses.
@@ -61,19 +62,6 @@ pub enum JoinEvent {
     },
     /// The download is not a valid state and is requested again.
     BadState,
-}
-
-#[derive(Debug)]
-pub(super) enum Phase {
-    Asking {
-        nonce: u64,
-        cookie: u64,
-        next_at: u64,
-    },
-    Downloading(Download),
-    InMatch(Box<Session>),
-    /// Waits for [`Endpoint::ask`].
-    Refused,
 }
 
 /// One participant of a match.
@@ -223,7 +211,7 @@ impl Endpoint {
         contact: Address,
     ) -> Result<Self, ConfigError> {
         validate(&config, &identity)?;
-        let mut endpoint = Endpoint::new(config, identity, role, Phase::Refused, Some(contact));
+        let mut endpoint = Endpoint::new(config, identity, role, Phase::UNASKED, Some(contact));
         endpoint.ask(contact);
         Ok(endpoint)
     }
@@ -238,7 +226,7 @@ impl Endpoint {
         (self.routes, self.contacts, self.guests) = Default::default();
         // Each attempt has another nonce, which tells the contact to begin a new handshake as well.
         self.attempts = self.attempts.wrapping_add(1);
-        let was_refused = self.attempts > 1 && matches!(self.phase, Phase::Refused);
+        let was_refused = matches!(self.phase, Phase::Refused);
         if let Phase::InMatch(session) = &self.phase {
             (self.role, self.config) = (session.role, session.config.clone());
         }

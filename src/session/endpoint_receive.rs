@@ -4,11 +4,12 @@ use alloc::boxed::Box;
 
 use super::address::Address;
 use super::config::TIME_MAX;
-use super::endpoint::{Endpoint, JoinEvent, Phase, STATE_BYTES_MAX};
+use super::endpoint::{Endpoint, JoinEvent, STATE_BYTES_MAX};
 use super::guests::Guests;
 use super::id::{Key, PeerId};
 use super::join_packet::{JoinPacket, RefusalReason, is_join_packet};
 use super::packet;
+use super::phase::Phase;
 use super::routes::token;
 use super::start_state::StartState;
 use super::state::Session;
@@ -155,8 +156,7 @@ impl Endpoint {
     }
 
     fn begin(&mut self, now: u64) {
-        let refused = Phase::Refused;
-        let Phase::Downloading(download) = core::mem::replace(&mut self.phase, refused) else {
+        let Phase::Downloading(download) = core::mem::replace(&mut self.phase, Phase::UNASKED) else {
             return;
         };
         let start = download.finish().and_then(|bytes| StartState::decode(&bytes).ok());

@@ -30,6 +30,7 @@ mod link;
 mod pace;
 mod packet;
 mod peers;
+mod phase;
 mod play;
 mod progress;
 mod proposal;

@@ -5,6 +5,9 @@
 //! [`Speed`] in every sub-step. The rounding error is therefore carried over to the next change by the same joint
 //! (error feedback, as in first-order noise shaping), so that the sum of the changes in a tick is rounded once.
 
+#[cfg(test)]
+mod tests;
+
 use super::body::SolverBody;
 use super::limits::Faults;
 use crate::body::Body;
@@ -92,36 +95,4 @@ fn rounded_sum(speed: Speed, change: i64, remainder: &mut i32) -> Speed {
     let units = crate::math::round_shift(exact, Change::EXTRA);
     *remainder = exact.wrapping_sub(units << Change::EXTRA) as i32;
     Speed::from_bits(saturate(i64::from(speed.to_bits()) + units))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::Rng;
-
-    /// The error of the velocity stays within half a unit.
-    #[test]
-    fn the_sum_of_all_changes_is_rounded_once() {
-        let mut rng = Rng::new(3);
-        for _ in 0..100 {
-            let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
-            let (mut remainders, mut faults) = (Remainders::default(), 0);
-            let (mut sum_a, mut sum_b) = (0, 0);
-            for _ in 0..1000 {
-                let mut any = || i64::from(rng.next_u32()) - (1 << 30);
-                let (change_a, change_b) = (any(), any());
-                (sum_a, sum_b) = (sum_a + change_a, sum_b + change_b);
-                let [to_a, to_b] = [change_a, change_b].map(|x| Change { x, y: -x, spin: x });
-                let pair = (&mut a, &mut b, &mut remainders, &mut faults);
-                BodyPair { a: pair.0, b: pair.1, remainders: pair.2, faults: pair.3 }.change(to_a, to_b);
-            }
-            for (body, sum) in [(a, sum_a), (b, sum_b)] {
-                let off = |speed: Speed, sum: i64| (i64::from(speed.to_bits()) << 30).abs_diff(sum);
-                assert!(off(body.velocity.x, sum) <= 1 << 29);
-                assert!(off(body.velocity.y, -sum) <= 1 << 29);
-                assert!(off(body.spin, sum) <= 1 << 29);
-            }
-            assert_eq!(faults, 0);
-        }
-    }
 }

@@ -28,8 +28,8 @@ const FAST: Speed = Speed::lit("64");
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) enum FastImpact {
     /// Takes the impulses back. Runs within `ContactVelocities::forget`, so that the velocities stay as they are, but the
-    /// next sub-step does not repeat their changes. Velocities that saturate are no faults: the next sub-step then only
-    /// begins with a less accurate guess.
+    /// next sub-step does not repeat their changes. A velocity that saturates here counts as a fault, because a part of
+    /// the impulse is then not taken back.
     Withdraw,
     /// Sets the impulses to zero, at the end of the sub-step.
     Clear,
@@ -38,15 +38,14 @@ pub(in crate::solver) enum FastImpact {
 impl Operation<Contacts> for FastImpact {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, .. } = parts else { return };
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
         let fast = fast::<L, N>(batch, extras);
         if !L::any(fast) {
             return;
         }
         match self {
             FastImpact::Withdraw => {
-                let mut unread = 0;
-                let policy = &mut Saturating::<L, N>::new(&mut unread);
+                let policy = &mut Saturating::<L, N>::new(faults);
                 let back =
                     |lambda: &Ints<N>| L::select(fast, L::sub(L::splat(0), L::load(lambda)), L::splat(0));
                 let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);

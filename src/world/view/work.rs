@@ -66,8 +66,11 @@ impl World {
     }
 
     /// Exempts the work that the next tick needs in addition if the world was decoded: its caches are new, so the tick
-    /// searches all pairs and visits all sleeping contacts.
+    /// searches all pairs and visits all sleeping contacts. Exempts nothing if the caches are not new.
     pub(crate) fn exempt_fresh_caches(&mut self) {
+        if !self.scratch.pairs.changes.all() {
+            return;
+        }
         let search = search_work(self.scratch.shapes.broad_phase().comparisons(Moved::All));
         self.scratch.meter.exempt(search.saturating_add(visit_work(&self.state.sleeping_contacts)));
     }
