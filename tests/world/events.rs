@@ -345,7 +345,7 @@ fn events_that_are_switched_on_tell_of_all_pairs_that_touch() {
     assert_eq!(tick(&mut world), (0, 1, true), "the pair still touches, but has no events");
     assert_eq!(tick(&mut world), (0, 0, true));
 
-    // What changes and changes back has no events.
+    // A switch that is set and reset between two ticks has no events.
     switch(&mut world, id, on);
     switch(&mut world, id, off);
     assert_eq!(tick(&mut world), (0, 0, true));
