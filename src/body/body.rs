@@ -12,8 +12,7 @@ use super::rest_ticks::RestTicks;
 use super::settings::BodySettings;
 use super::shape_list::{self, ShapeList};
 use crate::math::{
-    Angle, Fx, Reciprocal, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide,
-    widen,
+    Angle, Fx, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
 };
 
 /// Limit in m/s of each velocity component and of `Body::spin`. The difference of two such values fits [`Speed`].
@@ -285,11 +284,6 @@ impl Body {
         self.torque = self.torque.saturating_sub(moved.cross(self.force));
         self.velocity = (self.velocity() + moved.perp().scale(omega)).narrow();
         self.clamp_velocity();
-    }
-
-    /// Whether the rotation is not locked.
-    pub(crate) fn turns(&self) -> bool {
-        self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
     /// Clears the velocity along locked axes, and sets the kinematic target to the current pose along these axes.

@@ -19,6 +19,7 @@ mod settings;
 mod shape;
 mod shape_fields;
 mod shape_list;
+mod turning;
 
 pub use area::{Area, Attraction, Falloff};
 pub(crate) use arena::{Arena, ArenaRange, Handle, SharedArena};

@@ -29,14 +29,17 @@ pub(super) struct BodyFacts {
     /// Mass in kg, 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
+    /// Rotation in radians up to the mean time of the sub-steps, at the speed at the start of the tick.
+    pub(super) rotation: Fx,
 }
 
 impl BodyFacts {
-    const GROUND: Self = BodyFacts { mass: Fx::ZERO, inverse_gyration: Reciprocal::ZERO };
+    const GROUND: Self = BodyFacts { mass: Fx::ZERO, inverse_gyration: Reciprocal::ZERO, rotation: Fx::ZERO };
 
-    fn of(body: &Body) -> Self {
+    fn of(body: &Body, mean_time: Fx) -> Self {
         let mass = if body.is_dynamic() { body.mass() } else { Fx::ZERO };
-        BodyFacts { mass, inverse_gyration: body.mass.inverse_gyration }
+        let rotation = body.rotation_in(mean_time);
+        BodyFacts { mass, inverse_gyration: body.mass.inverse_gyration, rotation }
     }
 }
 
@@ -56,7 +59,7 @@ impl BodyList {
     #[cfg(test)]
     pub(super) fn fill(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32]) {
         self.begin(bodies.slot_count());
-        slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
+        slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot), Fx::ZERO));
     }
 
     pub(super) fn begin(&mut self, slot_count: usize) {
@@ -73,9 +76,10 @@ impl BodyList {
         self.facts.push(BodyFacts::GROUND);
     }
 
+    /// `mean_time` is the mean time of the sub-steps in seconds since the start of the tick.
     #[inline]
-    pub(super) fn add(&mut self, slot: u32, body: &Body) {
-        self.push(slot, body, SolverBody::of(body), BodyFacts::of(body));
+    pub(super) fn add(&mut self, slot: u32, body: &Body, mean_time: Fx) {
+        self.push(slot, body, SolverBody::of(body), BodyFacts::of(body, mean_time));
     }
 
     fn push(&mut self, slot: u32, source: &Body, body: SolverBody, facts: BodyFacts) {

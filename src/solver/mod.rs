@@ -95,7 +95,7 @@ impl Solver {
         // Bodies are large, so one loop reads each body for both lists.
         for &slot in slots {
             let body = bodies.at(slot);
-            self.list.add(slot, body);
+            self.list.add(slot, body, tuning.mean_time);
             self.moving.extend(MovingBody::prepare(self.list.index_of(slot), body, tuning));
         }
     }

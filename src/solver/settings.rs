@@ -156,6 +156,8 @@ pub(crate) fn check_count(name: &'static str, value: u32, min: u32, max: u32) ->
 pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,
+    /// Mean time of the sub-steps in seconds since the start of the tick, each counted at its start.
+    pub(crate) mean_time: Fx,
     pub(crate) iterations: u32,
     pub(crate) contact: Softness,
     /// Softness of contacts with a body that is not dynamic.
@@ -195,6 +197,7 @@ impl Tuning {
         };
         Tuning {
             rate,
+            mean_time: crate::math::ratio(i64::from(settings.sub_steps) - 1, 2 * i64::from(rate)),
             iterations: settings.iterations,
             contact,
             contact_immovable,

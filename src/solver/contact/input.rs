@@ -6,12 +6,13 @@ mod tests;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
+use super::arms::{Arms, common_rotation};
 use super::prospect::Prospect;
 use super::restitution::ELASTIC;
 use super::{Features, Surface, WarmStarts};
 use alloc::vec::Vec;
 
-use crate::collision::{Contact, KeptManifold, Manifold, Pair, PointImpulse};
+use crate::collision::{Contact, Manifold, Pair, PointImpulse};
 use crate::math::{Length, Step, convert};
 use crate::simd::{Lanes, Quad, prefetch};
 
@@ -154,11 +155,9 @@ impl ContactSource<'_> {
         let bodies = self.bodies_of(pair);
         let [a, b] = bodies.map(|index| self.list.facts(index));
         let fractions = MassFractions::of_masses(a.mass, b.mass);
-        let n = manifold.normal;
         let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
         let [first, second] = manifold.both_points();
         let memory = &self.contacts[pair.contact as usize];
-        let KeptManifold { arm_a: to_a, arm_b: to_b, to_second, .. } = memory.kept;
         let gap = match memory.kept.separations {
             // A manifold that cannot be kept, such as one at a time of impact, counts as one without a gap.
             _ if !memory.kept.can_be_kept() => Step::ZERO,
@@ -168,6 +167,11 @@ impl ContactSource<'_> {
         let gap: Length = convert(gap.max(Step::ZERO));
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
+        let mut arms = Arms::of(manifold, &memory.kept);
+        if old_first.normal.is_positive() || old_second.normal.is_positive() {
+            arms.turn(common_rotation(a.rotation, b.rotation));
+        }
+        let Arms { normal: n, to_a, to_b, to_second } = arms;
         let changed = self.changed(bodies);
         *input = Input {
             bodies,

@@ -17,6 +17,7 @@
 //! The difference of two velocities fits its format, because each velocity is below 512 m/s. Lanes without a contact
 //! have gains of 0, so their other numbers do not matter.
 
+mod arms;
 mod batch;
 mod constants;
 mod extras;

@@ -36,11 +36,10 @@ pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tun
         }
     }
     visitors.sort_unstable();
-    let ahead = time_ahead(state);
     for of_body in visitors.chunk_by(|a, b| a[0] == b[0]) {
         let [slot, ..] = of_body[0];
         let body = state.bodies.at(slot);
-        let mut sum = Sum::new(state, body, ahead);
+        let mut sum = Sum::new(state, body, tuning.mean_time);
         of_body.chunk_by(|a, b| a[1] == b[1]).for_each(|shapes| sum.add_area(shapes));
         let Sum { effect, is_on_moving_ground, .. } = sum.finished();
         scratch.solver.apply_areas(slot, body, &effect, tuning);
@@ -59,13 +58,6 @@ pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
     };
     let (a, b) = pair;
     (is_acted_on(a, b) || is_acted_on(b, a)) && scratch.shapes.poses().are_within(pair, Fx::ZERO)
-}
-
-/// Time in seconds after the start of the tick for which poses are predicted.
-fn time_ahead(state: &State) -> Fx {
-    let sub_steps = i64::from(state.config.solver.sub_steps);
-    let doubled = 2 * sub_steps * i64::from(state.config.tick_rate);
-    crate::math::ratio(sub_steps - 1, doubled)
 }
 
 /// The sum of the effects on one body.

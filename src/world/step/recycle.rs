@@ -2,12 +2,9 @@
 
 use crate::body::{Body, BodyKind};
 use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
-use crate::math::{Length, Speed, Vec2};
+use crate::math::{Length, Vec2};
 use crate::world::cache::{ClosingBound, Margins, Recycled, ShapeMotion};
 use crate::world::state::State;
-
-/// Speed at the radius of gyration, in m/s, up to which a dynamic body hardly turns.
-const TURNING_SPEED: Speed = Speed::lit("0.02");
 
 /// The shapes of a contact, and the limits within which it keeps its manifold and lever arms.
 pub(super) struct Recycling<'a> {
@@ -46,10 +43,10 @@ impl<'a> Recycling<'a> {
         let bodies = shapes.map(|shape| state.bodies.at(shape.body));
         let extents = shapes.map(ShapeMotion::extent);
         let is_round = count < 2 && (shapes[0].radius > 0 || shapes[1].radius > 0);
-        let hardly_turns = |body: &Body| body.is_dynamic() && body.spin.abs() <= TURNING_SPEED;
-        let rolls = is_round && !bodies.into_iter().all(hardly_turns);
-        let turns = |body: &Body| body.kind() == BodyKind::Kinematic && body.spin != 0;
-        let arm_tolerance: Length = match bodies.into_iter().any(turns) {
+        let rolls = is_round && bodies.into_iter().any(|body| !body.is_dynamic() || body.is_turning());
+        let is_rotor = |body: &Body| body.kind() == BodyKind::Kinematic && body.is_turning();
+        let [a, b] = bodies;
+        let arm_tolerance: Length = match a.turns_with(b) || is_rotor(a) || is_rotor(b) {
             true => Length::ZERO,
             false => extents[0].min(extents[1]) >> 6,
         };

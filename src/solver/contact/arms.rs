@@ -1,0 +1,53 @@
+//! The normal and the lever arms of a contact.
+//!
+//! They do not change within a tick. If two bodies that press on each other turn together, the normal and the arms are
+//! those at the mean time of the sub-steps. With those at the start of the tick, a force `F` on an arm `d` would leave
+//! a couple of `F d w t` in each tick, with the angular velocity `w` and the mean time `t`, and the bodies would lose
+//! their angular momentum.
+
+#[cfg(test)]
+mod tests;
+
+use crate::collision::{KeptManifold, Manifold};
+use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
+
+pub(super) struct Arms {
+    pub(super) normal: Vec2<Unit>,
+    /// Vectors from the centres of mass of A and B to the first point.
+    pub(super) to_a: Vec2<Length>,
+    pub(super) to_b: Vec2<Length>,
+    /// Vector from the first point to the second, or zero.
+    pub(super) to_second: Vec2<Length>,
+}
+
+impl Arms {
+    pub(super) fn of(manifold: &Manifold, kept: &KeptManifold) -> Self {
+        let KeptManifold { arm_a, arm_b, to_second, .. } = *kept;
+        Arms { normal: manifold.normal, to_a: arm_a, to_b: arm_b, to_second }
+    }
+
+    /// Rotates the normal and the arms by an angle in radians.
+    #[inline]
+    pub(super) fn turn(&mut self, radians: Fx) {
+        if radians == 0 {
+            return;
+        }
+        let rotation = Rot::from_angle(Angle::from_radians(radians));
+        self.normal = rotation.apply(self.normal);
+        for arm in [&mut self.to_a, &mut self.to_b, &mut self.to_second] {
+            *arm = rotation.apply(*arm);
+        }
+    }
+}
+
+/// The rotation that two bodies have in common: the smaller one if they turn in the same direction, otherwise 0.
+#[inline]
+pub(super) fn common_rotation(a: Fx, b: Fx) -> Fx {
+    if a > 0 && b > 0 {
+        a.min(b)
+    } else if a < 0 && b < 0 {
+        a.max(b)
+    } else {
+        Fx::ZERO
+    }
+}
