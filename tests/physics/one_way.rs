@@ -1,6 +1,6 @@
 //! One-way platforms: solid from above, passable from below.
 
-use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::World;
@@ -198,4 +198,28 @@ fn what_is_shot_from_below_passes_within_the_tick() {
     // At the end of the tick the large ball is at -0.4 m, and touches the small one.
     let y = height(&world, small);
     assert!((y - fx!(0.2)).abs() < fx!(0.05), "the ball is at {y}");
+}
+
+/// Each contact of the platform begins while the mover is half-way through it.
+#[test]
+fn what_turns_round_half_way_falls_back_between_the_shapes_of_a_platform() {
+    let links = Chain::new(&[-4, 0, 4].map(|x| Vec2::new(Fx::from(x), fx!(0)))).links().expect("valid");
+    let end = Vec2::new(fx!(2), fx!(0));
+    let line = ShapeDef::new(Geometry::segment(-end, end).expect("valid"));
+    let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.1)).expect("valid"));
+    let in_row = |shape: ShapeDef, y: Fx| vec![shape.offset((fx!(-2), y)), shape.offset((fx!(2), y))];
+    for platform in [links, in_row(line, fx!(0)), in_row(slab, fx!(-0.1))] {
+        let platform: Vec<_> = platform.into_iter().map(|shape| shape.one_way(up())).collect();
+        for (name, shape) in movers() {
+            for speed in [fx!(7.6), fx!(7.8), fx!(8)] {
+                let mut world = World::default();
+                world.spawn(&BodyDef::fixed(), &platform).expect("valid");
+                let def = BodyDef::dynamic().position((fx!(-0.4), fx!(-3))).velocity((fx!(0.5), speed));
+                let body = world.spawn(&def, &[shape]).expect("valid");
+                (0..300).for_each(|_| world.step());
+                let y = height(&world, body);
+                assert!(y < fx!(-30), "{name} at {speed} m/s on {:?}: at {y} m", platform[0].geometry);
+            }
+        }
+    }
 }

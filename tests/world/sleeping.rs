@@ -108,6 +108,18 @@ fn waking_the_ground_wakes_what_touches_it() {
     }
 }
 
+/// A body that has never been awake has no contacts.
+#[test]
+fn waking_the_ground_wakes_what_was_asleep_from_the_start() {
+    let (mut world, floor) = world_with_floor();
+    let def = |x: Fx, y: Fx| BodyDef::dynamic().position((x, y)).asleep();
+    let resting = spawn(&mut world, def(fx!(0), fx!(0.5)), square(fx!(0.5)));
+    let floating = spawn(&mut world, def(fx!(3), fx!(0.6)), square(fx!(0.5)));
+    run(&mut world, 3);
+    world.wake(floor).expect("there");
+    assert_eq!([resting, floating].map(|body| is_asleep(&world, body)), [false, true]);
+}
+
 #[test]
 fn joining_and_parting_wakes() {
     let world = wakes(|world, floor, [.., top]| {

@@ -17,7 +17,17 @@ pub(crate) struct ContactCache {
     axes: Vec<CachedAxis>,
     /// During the narrow phase, the touching pairs of the last tick, sorted by pair. Otherwise outdated.
     touched: Vec<ActiveContact>,
+    /// Buffer of the narrow phase.
+    passing: Vec<Passing>,
     surfaces_changed: bool,
+}
+
+/// A shape that passes through a one-way shape of another body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Passing {
+    /// Slot of the body with the one-way shape.
+    pub(crate) platform: u32,
+    pub(crate) shape: u32,
 }
 
 pub(crate) struct NarrowPhaseBuffers<'a> {
@@ -25,6 +35,8 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
     /// The touching pairs of the last tick whose surfaces are still valid, sorted by pair.
     pub(crate) touched: &'a [ActiveContact],
+    /// Buffer with any contents.
+    pub(crate) passing: &'a mut Vec<Passing>,
 }
 
 /// Output of a whole narrow phase or of one thread, in the order of contacts. Aligned, so that no two threads write the
@@ -68,6 +80,7 @@ impl ContactCache {
             parts: Vec::new(),
             axes: Vec::new(),
             touched: Vec::new(),
+            passing: Vec::new(),
             surfaces_changed: true,
         }
     }
@@ -100,7 +113,7 @@ impl ContactCache {
     }
 
     pub(crate) fn begin(&mut self, contact_count: usize, part_count: usize) -> NarrowPhaseBuffers<'_> {
-        let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
+        let ContactCache { output, parts, axes, touched, passing, surfaces_changed } = self;
         axes.resize(contact_count, CachedAxis::default());
         core::mem::swap(&mut output.touching, touched);
         if core::mem::take(surfaces_changed) {
@@ -111,7 +124,7 @@ impl ContactCache {
             core::mem::swap(only, output);
         }
         parts.iter_mut().for_each(NarrowPhaseOutput::clear);
-        NarrowPhaseBuffers { axes, parts, touched }
+        NarrowPhaseBuffers { axes, parts, touched, passing }
     }
 
     pub(crate) fn finish(&mut self, threads: &Threads) {

@@ -273,6 +273,8 @@ pub(crate) struct MotionCache {
     moving_bodies: Vec<u32>,
     /// Whether there may be a sensor. After the last sensor is gone, the flag stays true.
     may_have_sensors: bool,
+    /// Whether there may be a one-way shape. After the last one is gone, the flag stays true.
+    may_have_one_way: bool,
 }
 
 impl MotionCache {
@@ -294,6 +296,7 @@ impl MotionCache {
         }
         self.shapes[slot as usize] = ShapeMotion::at_rest(shape, body, posed);
         self.may_have_sensors |= shape.is_sensor();
+        self.may_have_one_way |= shape.one_way().is_some();
     }
 
     /// Divides the shapes into ranges that end at the given slots.
@@ -333,6 +336,10 @@ impl MotionCache {
 
     pub(crate) fn may_have_sensors(&self) -> bool {
         self.may_have_sensors
+    }
+
+    pub(crate) fn may_have_one_way(&self) -> bool {
+        self.may_have_one_way
     }
 
     pub(crate) fn shape(&self, slot: u32) -> &ShapeMotion {

@@ -3,7 +3,8 @@ use core::ops::ControlFlow;
 
 use crate::body::{BodyId, Handle, IslandId};
 use crate::collision::{Contact, Pair};
-use crate::world::cache::Scratch;
+use crate::math::Fx;
+use crate::world::cache::{NARROW_PHASE_WORK, Scratch};
 use crate::world::state::State;
 
 /// Number of visited boxes that together cost one work unit.
@@ -94,7 +95,7 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     }
 }
 
-/// Wakes the sleeping bodies that touch the body in `slot`, and those that an area connects to it.
+/// Wakes the sleeping bodies that touch the body in `slot`, which is not dynamic, and those that an area connects to it.
 pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.meter.spend_visit(&state.sleeping_contacts);
     let other_body = |contact: &Contact| {
@@ -104,10 +105,41 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
         let connects = || state.sensor_of(contact.shapes).is_none() || state.has_area(contact.shapes);
         other.filter(|_| contact.touching && connects())
     };
-    let touching: Vec<u32> = state.sleeping_contacts.iter().filter_map(other_body).collect();
+    let mut touching: Vec<u32> = state.sleeping_contacts.iter().filter_map(other_body).collect();
+    add_touching(state, scratch, slot, &mut touching);
     for body in touching {
         wake_dynamic(state, scratch, body);
     }
+}
+
+/// Adds the sleeping bodies whose shapes touch the body in `slot`, in slot order. A body that was put to sleep before it
+/// took part in a tick has no contacts yet.
+fn add_touching(state: &State, scratch: &mut Scratch, slot: u32, touching: &mut Vec<u32>) {
+    scratch.pairs.non_colliding.refresh(state);
+    let Scratch { shapes, pairs, meter, .. } = scratch;
+    let (mut found, mut visited) = (Vec::new(), 0u64);
+    for shape in state.bodies.at(slot).shapes() {
+        let shape = shape.slot();
+        shapes.broad_phase().each_overlap_of(false, state.shapes.at(shape).fat, |other| {
+            visited += 1;
+            if state.body_of(other).is_asleep() {
+                found.push((shape.min(other), shape.max(other), state.shapes.at(other).body().slot()));
+            }
+            ControlFlow::Continue(())
+        });
+    }
+    meter.spend(visited / VISITS_PER_WORK);
+    found.retain(|&(a, b, _)| {
+        let pair = (a, b);
+        let reach = if state.has_area(pair) { Fx::ZERO } else { state.config.touching_distance() };
+        pairs.non_colliding.may_touch(state, pair)
+            && state.supports(pair)
+            && meter.spend(NARROW_PHASE_WORK)
+            && shapes.poses().are_within(pair, reach)
+    });
+    // The broad phase visits boxes in no defined order.
+    found.sort_unstable();
+    touching.extend(found.into_iter().map(|(.., body)| body));
 }
 
 /// Wakes the bodies that joints connect to a body, and restarts their counts of ticks at rest.

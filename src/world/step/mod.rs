@@ -7,6 +7,7 @@ mod joint_thresholds;
 mod motion;
 mod narrow_phase;
 mod pair_update;
+mod passing;
 mod phases;
 mod recycle;
 mod refit;

@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use super::passing;
 use super::recycle::Recycling;
 use super::speculative::{Side, SpeculativePair, approach};
 use crate::body::Handle;
@@ -10,8 +11,8 @@ use crate::math::{Fx, Length, Step, Vec2};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses,
-    PredictedMotion, Scratch,
+    AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit,
+    Poses, PredictedMotion, Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -32,9 +33,11 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     let mut contacts = core::mem::take(&mut state.contacts);
     let share = contacts.len().div_ceil(solver.parts).max(CONTACTS_MIN);
     let part_count = contacts.len().div_ceil(share).max(1);
-    let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), part_count);
+    let NarrowPhaseBuffers { axes, parts, touched, passing } = cache.begin(contacts.len(), part_count);
+    passing::find(&contacts, shapes.poses().motion(), passing);
     let (margins, machine) = (Margins::of(&state.config), solver.machine);
-    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), awake, touched, margins, machine };
+    let narrow_phase =
+        NarrowPhase { state, poses: shapes.poses(), awake, touched, passing, margins, machine };
     let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
     let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
     solver.threads.run_team(jobs, |((first, (contacts, axes)), output), _| {
@@ -50,6 +53,7 @@ struct NarrowPhase<'a> {
     poses: &'a Poses,
     awake: &'a AwakeSet,
     touched: &'a [ActiveContact],
+    passing: &'a [Passing],
     margins: Margins,
     machine: Machine,
 }
@@ -210,7 +214,7 @@ impl NarrowPhase<'_> {
             // this is the time of impact.
             let mut moved_by = [Vec2::ZERO; 2];
             if !is_kept {
-                keep_reachable(state, poses, &pair, contact, manifold, sat);
+                keep_reachable(state, poses, &pair, contact, self.passing, manifold, sat);
                 if manifold.points().is_empty() {
                     manifolds.pop();
                     continue;
@@ -260,8 +264,12 @@ impl NarrowPhase<'_> {
 
 /// Whether two shapes would have contact points that the solver has to solve. Changes no state.
 pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
-    let found = state.contacts.binary_search_by_key(&shapes, |contact| contact.shapes);
-    let mut contact = found.map_or(Contact::new(shapes), |index| state.contacts[index]);
+    // The contacts of bodies that were woken in this tick are still in the list of sleeping contacts.
+    let in_list = |contacts: &[Contact]| {
+        contacts.binary_search_by_key(&shapes, |contact| contact.shapes).ok().map(|index| contacts[index])
+    };
+    let found = in_list(&state.contacts).or_else(|| in_list(&state.sleeping_contacts));
+    let mut contact = found.unwrap_or(Contact::new(shapes));
     let margins = Margins::of(&state.config);
     let (a, b) = (poses.motion().shape(shapes.0), poses.motion().shape(shapes.1));
     let closing = ClosingBound::of(&margins, a, b);
@@ -269,7 +277,7 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     closing.may_meet(a, b) && {
         let (mut axis, mut counters) = (CachedAxis::default(), SatCounters::default());
         let mut manifold = manifold_of(poses, &pair, shapes, &mut axis, &mut counters);
-        keep_reachable(state, poses, &pair, &mut contact, &mut manifold, &mut counters);
+        keep_reachable(state, poses, &pair, &mut contact, &[], &mut manifold, &mut counters);
         !manifold.points().is_empty()
     }
 }
@@ -294,6 +302,7 @@ fn keep_reachable(
     poses: &Poses,
     pair: &SpeculativePair,
     contact: &mut Contact,
+    passing: &[Passing],
     manifold: &mut Manifold,
     counters: &mut SatCounters,
 ) {
@@ -310,7 +319,9 @@ fn keep_reachable(
         if pair.may_impact(manifold) {
             pair.move_to_impact(sides, poses.motion(), &mut at_touch, counters);
         }
-        contact.passing = pair.lets_pass(sides, &at_touch, was_passing);
+        let goes_on =
+            was_passing || contact.count == 0 && passing::is_beside(passing, contact.shapes, poses.motion());
+        contact.passing = pair.lets_pass(sides, &at_touch, goes_on);
         if contact.passing {
             *manifold = Manifold::NONE;
             return;
