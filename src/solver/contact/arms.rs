@@ -26,17 +26,18 @@ impl Arms {
         Arms { normal: manifold.normal, to_a: arm_a, to_b: arm_b, to_second }
     }
 
-    /// Rotates the normal and the arms by an angle in radians.
+    /// Rotates the normal and the arms by an angle in radians. Returns `false` if the angle is 0.
     #[inline]
-    pub(super) fn turn(&mut self, radians: Fx) {
+    pub(super) fn turn(&mut self, radians: Fx) -> bool {
         if radians == 0 {
-            return;
+            return false;
         }
         let rotation = Rot::from_angle(Angle::from_radians(radians));
         self.normal = rotation.apply(self.normal);
         for arm in [&mut self.to_a, &mut self.to_b, &mut self.to_second] {
             *arm = rotation.apply(*arm);
         }
+        true
     }
 }
 

@@ -58,6 +58,8 @@ pub(super) struct Input {
     pub(super) features: [u16; 2],
     /// Whether one of the bodies is wedged: see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
+    /// Whether the normal and the arms are turned ([`Arms::turn`]).
+    pub(super) turned: bool,
     /// Whether one of the bodies has an impact ([`ActiveContact::is_impact`]), in this contact or in another one.
     pub(super) impact: bool,
     pub(super) count: u8,
@@ -85,6 +87,7 @@ impl Input {
         shapes: (0, 0),
         features: [0; 2],
         wedged: false,
+        turned: false,
         impact: false,
         count: 0,
         extras: false,
@@ -168,9 +171,8 @@ impl ContactSource<'_> {
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let mut arms = Arms::of(manifold, &memory.kept);
-        if old_first.normal.is_positive() || old_second.normal.is_positive() {
-            arms.turn(common_rotation(a.rotation, b.rotation));
-        }
+        let presses = old_first.normal.is_positive() || old_second.normal.is_positive();
+        let turned = presses && arms.turn(common_rotation(a.rotation, b.rotation));
         let Arms { normal: n, to_a, to_b, to_second } = arms;
         let changed = self.changed(bodies);
         *input = Input {
@@ -179,6 +181,7 @@ impl ContactSource<'_> {
             contact: pair.contact,
             shapes: pair.shapes,
             features: [first.feature.0, second.feature.0],
+            turned,
             wedged: changed.iter().any(|&body| prospects[body as usize].is_wedged()),
             impact: changed.iter().any(|&body| prospects[body as usize].has_impact()),
             count: manifold.count(),

@@ -170,7 +170,7 @@ fn keep<L: Lanes<N>, const N: usize>(
     indices: &[u32],
     warm_starts: &mut WarmStarts,
 ) -> bool {
-    if batch.extras || records.unwedged_len() != Some(indices.len()) {
+    if batch.extras || records.keepable_len() != Some(indices.len()) {
         return false;
     }
     let mut separations = [Quad([0; 4]); N];

@@ -31,6 +31,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     counts: [u8; N],
     features: [[u16; 2]; N],
     wedged: [bool; N],
+    /// Whether a contact has turned arms ([`Arms::turn`](super::arms::Arms::turn)).
+    turned: bool,
     pub(super) denominators: Denominators<N>,
 }
 
@@ -42,6 +44,7 @@ impl<const N: usize> Records<N> {
         counts: [0; N],
         features: [[0; 2]; N],
         wedged: [false; N],
+        turned: false,
         denominators: Denominators::NONE,
     };
 
@@ -49,6 +52,7 @@ impl<const N: usize> Records<N> {
     pub(super) fn begin(&mut self) {
         self.len = 0;
         self.wedged = [false; N];
+        self.turned = false;
     }
 
     /// Puts a contact into `lane`, which must be the first lane without a contact.
@@ -60,6 +64,7 @@ impl<const N: usize> Records<N> {
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
         self.wedged[lane] = input.wedged;
+        self.turned |= input.turned;
     }
 
     /// The lanes with a contact: lane, index of the contact and number of points.
@@ -68,10 +73,11 @@ impl<const N: usize> Records<N> {
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// Number of lanes with a contact, or `None` if a contact has a wedged body (`Prospect::is_wedged`).
+    /// Number of lanes with a contact, or `None` if the next tick cannot keep the rows, because a contact has turned
+    /// arms or a wedged body (`Prospect::is_wedged`).
     #[inline(always)]
-    pub(super) fn unwedged_len(&self) -> Option<usize> {
-        (self.wedged == [false; N]).then_some(self.len as usize)
+    pub(super) fn keepable_len(&self) -> Option<usize> {
+        (!self.turned && self.wedged == [false; N]).then_some(self.len as usize)
     }
 
     /// Updates the index of the contact in a lane. Returns whether the lane already had a contact of the same shapes.

@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 
-use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
-use crate::math::{Fx, Step, Vec2};
+use crate::collision::{BoxPairs, CachedAxis, Contact, KeptManifold, Manifold, SatCounters};
+use crate::math::{Fx, Step, Unit, Vec2};
 use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
@@ -19,6 +19,7 @@ pub(crate) struct ContactCache {
     touched: Vec<ActiveContact>,
     /// Buffer of the narrow phase.
     passing: Vec<Passing>,
+    impact_order: ImpactOrder,
     surfaces_changed: bool,
 }
 
@@ -51,6 +52,8 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) touching: Vec<ActiveContact>,
     /// Possible hit events. A hit event is reported only if the shapes also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
+    /// The contacts whose manifolds are those at the time of an impact.
+    pub(crate) impacts: Vec<PendingImpact>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
     pub(crate) boxes: BoxPairs,
@@ -73,6 +76,32 @@ pub(crate) struct PendingHit {
     pub(crate) event: HitEvent,
 }
 
+/// A contact with the manifold at the time of its impact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PendingImpact {
+    /// Index of the manifold.
+    pub(crate) manifold: u32,
+    /// Index of the contact in the state.
+    pub(crate) contact: u32,
+    /// Slots of the bodies.
+    pub(crate) bodies: [u32; 2],
+    /// Fraction of the tick.
+    pub(crate) fraction: Unit,
+    /// The manifold at the start of the tick, and the manifold that the contact then keeps.
+    pub(crate) start: (Manifold, KeptManifold),
+}
+
+/// Buffers for the order of impacts. Their contents do not matter.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ImpactOrder {
+    /// Body slot, fraction of the tick and index of each impact.
+    pub(crate) by_body: Vec<(u32, Unit, u32)>,
+    /// Indices of impacts that are later than another one.
+    pub(crate) later: Vec<u32>,
+    /// Manifolds of impacts that do not happen.
+    pub(crate) hidden: Vec<u32>,
+}
+
 impl ContactCache {
     pub(crate) fn new() -> Self {
         ContactCache {
@@ -81,8 +110,14 @@ impl ContactCache {
             axes: Vec::new(),
             touched: Vec::new(),
             passing: Vec::new(),
+            impact_order: ImpactOrder::default(),
             surfaces_changed: true,
         }
+    }
+
+    /// Output of the last narrow phase, and a buffer.
+    pub(crate) fn output_mut(&mut self) -> (&mut NarrowPhaseOutput, &mut ImpactOrder) {
+        (&mut self.output, &mut self.impact_order)
     }
 
     /// Output of the last narrow phase. Empty after contacts were invalidated.
@@ -113,7 +148,7 @@ impl ContactCache {
     }
 
     pub(crate) fn begin(&mut self, contact_count: usize, part_count: usize) -> NarrowPhaseBuffers<'_> {
-        let ContactCache { output, parts, axes, touched, passing, surfaces_changed } = self;
+        let ContactCache { output, parts, axes, touched, passing, impact_order: _, surfaces_changed } = self;
         axes.resize(contact_count, CachedAxis::default());
         core::mem::swap(&mut output.touching, touched);
         if core::mem::take(surfaces_changed) {
@@ -189,16 +224,38 @@ impl NarrowPhaseOutput {
         self.contacts.clear();
         self.touching.clear();
         self.approaches.clear();
+        self.impacts.clear();
         self.boxes.clear();
         self.recycled.clear();
         self.sat = SatCounters::default();
     }
 
+    /// Removes the manifolds with the given indices, which are sorted.
+    pub(crate) fn remove(&mut self, removed: &[u32]) {
+        let is_removed = |index: u32| removed.binary_search(&index).is_ok();
+        let (mut manifold, mut contact) = (0u32.., 0u32..);
+        self.manifolds.retain(|_| manifold.next().is_none_or(|index| !is_removed(index)));
+        self.contacts.retain(|_| contact.next().is_none_or(|index| !is_removed(index)));
+        self.touching.retain(|pair| !is_removed(pair.manifold));
+        for pair in &mut self.touching {
+            pair.manifold -= count(&removed[..removed.partition_point(|&index| index < pair.manifold)]);
+        }
+    }
+
     /// Joins the outputs of the threads. Each thread copies the output that it has written.
     fn join(&mut self, parts: &[Self], threads: &Threads) {
-        let NarrowPhaseOutput { manifolds, contacts, touching, approaches, sat, boxes: _, recycled: _ } =
-            self;
+        let NarrowPhaseOutput {
+            manifolds,
+            contacts,
+            touching,
+            approaches,
+            impacts,
+            sat,
+            boxes: _,
+            recycled: _,
+        } = self;
         approaches.clear();
+        impacts.clear();
         *sat = SatCounters::default();
         make_room(manifolds, parts.iter().map(|part| &*part.manifolds));
         make_room(contacts, parts.iter().map(|part| &*part.contacts));
@@ -214,6 +271,11 @@ impl NarrowPhaseOutput {
                 contacts: split_off(&mut contacts, part.contacts.len()),
                 touching: split_off(&mut touching, part.touching.len()),
             };
+            let moved = |impact: &PendingImpact| PendingImpact {
+                manifold: first_manifold + impact.manifold,
+                ..*impact
+            };
+            impacts.extend(part.impacts.iter().map(moved));
             first_manifold += count(&part.manifolds);
             approaches.extend_from_slice(&part.approaches);
             sat.cached_axis_hits += part.sat.cached_axis_hits;

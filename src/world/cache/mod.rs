@@ -28,7 +28,8 @@ mod union_find;
 pub(crate) use awake::{AwakeSet, SlotShare, is_awake};
 pub(crate) use changes::Changes;
 pub(crate) use contacts::{
-    ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit, Recycled,
+    ContactCache, ImpactOrder, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit, PendingImpact,
+    Recycled,
 };
 pub(crate) use joint_links::JointLinks;
 pub(crate) use meter::{NARROW_PHASE_WORK, NEW_PAIR_WORK, WorkMeter, pair_work, search_work, visit_work};

@@ -27,6 +27,20 @@ const ROUNDS_MAX: u32 = 4;
 /// Distance in metres up to which shapes count as touching, so that the search for the time of impact ends.
 const TOLERANCE: Step = Step::lit("0.001");
 
+/// The impact of two shapes on their paths within a tick.
+#[derive(Debug)]
+pub(super) enum Impact {
+    /// The shapes pass by each other.
+    Miss,
+    At {
+        /// Fraction of the tick.
+        fraction: Unit,
+        manifold: Manifold,
+        /// Displacements of both bodies from the start of the tick to the impact.
+        moved: [Vec2<Length>; 2],
+    },
+}
+
 struct MovingShape<'a> {
     side: Side<'a>,
     motion: &'a PredictedMotion,
@@ -58,17 +72,16 @@ impl SpeculativePair<'_> {
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
     }
 
-    /// If the shapes touch within the tick, replaces the manifold by that at the time of impact, and returns the
-    /// displacements of both bodies from the start of the tick to this time. Otherwise leaves the manifold as it is,
-    /// and returns `None`.
+    /// The impact of the shapes on their unobstructed paths within the tick. `None` if `manifold`, that at the start of
+    /// the tick, has no point that gets to the other shape.
     #[cold]
-    pub(super) fn move_to_impact(
+    pub(super) fn impact(
         &self,
         sides: [Side<'_>; 2],
         motion: &MotionCache,
-        manifold: &mut Manifold,
+        manifold: &Manifold,
         counters: &mut SatCounters,
-    ) -> Option<[Vec2<Length>; 2]> {
+    ) -> Option<Impact> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let shapes = [(self.a, 0), (self.b, 1)].map(|(shape, side)| MovingShape {
             side: sides[side],
@@ -82,14 +95,16 @@ impl SpeculativePair<'_> {
             let [a, b] = shapes.each_ref().map(|shape| shape.at(fraction));
             let at_impact = collide_near(&a, &b, self.closing.margin, &mut CachedAxis::default(), counters);
             if at_impact.points().is_empty() {
-                break;
+                return Some(Impact::Miss);
             }
             let there = motions.map(|motion| motion.advanced(fraction));
             let next = soonest(there.each_ref(), &at_impact);
+            let is_apart = at_impact.points().iter().all(|point| point.separation > TOLERANCE);
             found = Some((at_impact, fraction, there));
-            let Some(later) = next.filter(|next| next.separation.saturating_abs() > TOLERANCE) else { break };
-            match time_of_touch(&later, time) {
+            let later = next.filter(|next| next.separation.saturating_abs() > TOLERANCE);
+            match later.and_then(|later| time_of_touch(&later, time)) {
                 Some(later) => time = later,
+                None if is_apart => return Some(Impact::Miss),
                 None => break,
             }
         }
@@ -100,8 +115,8 @@ impl SpeculativePair<'_> {
             let closed = saturate_wide(round_shift_wide(closing, Unit::FRAC_NBITS));
             Step::from_bits(saturate(closed.saturating_add(point.separation.to_bits().into())))
         });
-        *manifold = at_impact;
-        Some(motions.map(|motion| motion.shift_until(fraction).narrow()))
+        let moved = motions.map(|motion| motion.shift_until(fraction).narrow());
+        Some(Impact::At { fraction, manifold: at_impact, moved })
     }
 }
 

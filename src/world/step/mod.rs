@@ -2,6 +2,7 @@ mod areas;
 mod contact_events;
 mod continuous;
 mod finalise;
+mod first_impacts;
 mod impact;
 mod joint_thresholds;
 mod motion;

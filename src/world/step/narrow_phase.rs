@@ -2,6 +2,8 @@
 
 use core::ops::Range;
 
+use super::first_impacts;
+use super::impact::Impact;
 use super::passing;
 use super::recycle::Recycling;
 use super::speculative::{Side, SpeculativePair, approach};
@@ -12,7 +14,7 @@ use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
     AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit,
-    Poses, PredictedMotion, Scratch,
+    PendingImpact, Poses, PredictedMotion, Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -45,6 +47,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
         0
     });
     cache.finish(&solver.threads);
+    first_impacts::withdraw_later_ones(&mut contacts, &state.bodies, cache);
     state.contacts = contacts;
 }
 
@@ -187,11 +190,13 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { boxes, recycled, contacts, manifolds, touching, approaches, sat } = output;
+        let NarrowPhaseOutput { boxes, recycled, contacts, manifolds, touching, approaches, impacts, sat } =
+            output;
         let motion = poses.motion();
         let (mut box_pairs, mut recycled) = (0.., recycled.iter().peekable());
         for (index, source) in near.iter() {
             let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
+            let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             if shape_a.sensor || shape_b.sensor {
                 // Sensors have no manifolds: see `sensor_events.rs`.
@@ -219,19 +224,22 @@ impl NarrowPhase<'_> {
                     manifolds.pop();
                     continue;
                 }
+                let impact = self.impact(&pair, contact.shapes, manifold, sat);
+                if matches!(impact, Some(Impact::Miss)) {
+                    manifolds.pop();
+                    continue;
+                }
                 let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], manifold.count());
                 recycling.keep(contact, manifold);
-                if pair.may_impact(manifold) {
-                    let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
-                    if !sides.iter().any(|side| self.is_held(side))
-                        && let Some(moved) = pair.move_to_impact(sides, motion, manifold, sat)
-                    {
-                        recycling.keep_impact(contact, manifold, moved);
-                        moved_by = moved;
-                    }
+                if let Some(Impact::At { fraction, manifold: at_impact, moved }) = impact {
+                    let bodies = [shape_a.body, shape_b.body];
+                    let start = (*manifold, contact.kept);
+                    impacts.push(PendingImpact { manifold: place, contact: index, bodies, fraction, start });
+                    *manifold = at_impact;
+                    recycling.keep_impact(contact, manifold, moved);
+                    moved_by = moved;
                 }
             }
-            let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             contacts.push(index);
             let mut is_hit = false;
             if (shape_a.hit_events || shape_b.hit_events)
@@ -259,6 +267,25 @@ impl NarrowPhase<'_> {
             });
         }
         touched
+    }
+
+    /// The impact of the shapes of a pair, if its manifold at the start of the tick does not suffice.
+    #[inline(always)]
+    fn impact(
+        &self,
+        pair: &SpeculativePair,
+        (a, b): Pair,
+        manifold: &Manifold,
+        counters: &mut SatCounters,
+    ) -> Option<Impact> {
+        if !pair.may_impact(manifold) {
+            return None;
+        }
+        let sides = [a, b].map(|slot| Side::of(self.state, self.poses, slot));
+        if sides.iter().any(|side| self.is_held(side)) {
+            return None;
+        }
+        pair.impact(sides, self.poses.motion(), manifold, counters)
     }
 }
 
@@ -316,8 +343,10 @@ fn keep_reachable(
         // Shapes that first touch later in the tick may then touch with other faces than those of `manifold`, which
         // were the nearest ones at the start.
         let mut at_touch = *manifold;
-        if pair.may_impact(manifold) {
-            pair.move_to_impact(sides, poses.motion(), &mut at_touch, counters);
+        if pair.may_impact(manifold)
+            && let Some(Impact::At { manifold, .. }) = pair.impact(sides, poses.motion(), manifold, counters)
+        {
+            at_touch = manifold;
         }
         let goes_on =
             was_passing || contact.count == 0 && passing::is_beside(passing, contact.shapes, poses.motion());

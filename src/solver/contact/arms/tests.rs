@@ -19,7 +19,8 @@ fn arms_keep_their_lengths_and_their_angles_to_the_normal() {
         to_b: length(fx!(0), fx!(-3)),
         to_second: length(fx!(4), fx!(0)),
     };
-    arms.turn(Angle::QUARTER.to_radians());
+    assert!(!arms.turn(Fx::ZERO));
+    assert!(arms.turn(Angle::QUARTER.to_radians()));
     let close = |a: Vec2<Length>, b: Vec2<Length>| {
         (a - b).x.abs() < Length::DELTA * 9 && (a - b).y.abs() < Length::DELTA * 9
     };
