@@ -49,18 +49,19 @@ impl SolverShare<'_, '_> {
             contacts.run(contact::WarmStart, context);
         }
 
-        // Solve with bias.
-        for iteration in 0..iterations {
-            let solve = contact::Solve { pass: Bias, order: PointOrder::of(index, iteration), constants };
-            contacts.run_overflow(solve, context);
-            velocities.exempt(context, || joints.solve(Bias, context));
-            contacts.run_coloured(solve, context);
-        }
+        // Solve with bias. The additional rounds of cold contacts come first. After the joints, they would solve the impact
+        // of a body as if nothing held it, and its hinges would open.
         for iteration in iterations..cold_iterations {
             contacts.run_cold(
                 contact::Solve { pass: Bias, order: PointOrder::of(index, iteration), constants },
                 context,
             );
+        }
+        for iteration in 0..iterations {
+            let solve = contact::Solve { pass: Bias, order: PointOrder::of(index, iteration), constants };
+            contacts.run_overflow(solve, context);
+            velocities.exempt(context, || joints.solve(Bias, context));
+            contacts.run_coloured(solve, context);
         }
 
         velocities.exempt(context, || integrate_displacements(moving, context));
@@ -69,17 +70,17 @@ impl SolverShare<'_, '_> {
 
         // Relax: solve without bias.
         let (iterations, cold_iterations) = if tuning.relax { (iterations, cold_iterations) } else { (0, 0) };
-        for iteration in 0..iterations {
-            let solve = contact::Solve { pass: Relax, order: PointOrder::of(index, iteration), constants };
-            contacts.run_overflow(solve, context);
-            velocities.exempt(context, || joints.solve(Relax, context));
-            contacts.run_coloured(solve, context);
-        }
         for iteration in iterations..cold_iterations {
             contacts.run_cold(
                 contact::Solve { pass: Relax, order: PointOrder::of(index, iteration), constants },
                 context,
             );
+        }
+        for iteration in 0..iterations {
+            let solve = contact::Solve { pass: Relax, order: PointOrder::of(index, iteration), constants };
+            contacts.run_overflow(solve, context);
+            velocities.exempt(context, || joints.solve(Relax, context));
+            contacts.run_coloured(solve, context);
         }
         if !tuning.relax {
             contacts.run(Measure, context);

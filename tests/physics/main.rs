@@ -9,6 +9,7 @@ mod chain;
 mod collisions;
 mod columns;
 mod continuous;
+mod corners;
 mod couplings;
 mod driven_blocks;
 mod free_fall;

@@ -5,25 +5,35 @@
 //! floor. A later impact therefore gets the manifold at the start of the tick. If the other shape is behind the plane of
 //! the first impact, which the body does not cross, it gets no manifold.
 
+use super::speculative::approach;
 use crate::body::{Arena, Body, BodyId};
-use crate::collision::{Contact, Manifold};
-use crate::math::{Fx, Unit, Vec2, widen};
-use crate::world::cache::{ContactCache, ImpactOrder, NarrowPhaseOutput, PendingImpact};
+use crate::collision::{Contact, KeptManifold, Manifold, ManifoldPoint};
+use crate::math::{Fx, Step, Unit, Vec2, widen};
+use crate::world::cache::{ContactCache, ImpactOrder, MotionCache, NarrowPhaseOutput, PendingImpact, Poses};
+use crate::world::state::State;
 
 /// Fraction of a tick within which impacts count as simultaneous.
-const SIMULTANEOUS: Unit = Unit::lit("0.0625");
+const SIMULTANEOUS: Unit = Unit::lit("0.00390625");
 
 /// Replaces or removes the manifolds of impacts that are later than another impact of a dynamic body.
 pub(super) fn withdraw_later_ones(
     contacts: &mut [Contact],
-    bodies: &Arena<Body, BodyId>,
+    state: &State,
+    poses: &Poses,
+    touching: Step,
     cache: &mut ContactCache,
 ) {
     let (output, order) = cache.output_mut();
+    if output.impacts.is_empty() {
+        return;
+    }
+    list(output, &state.bodies, order);
+    add_touching(output, poses.motion(), touching, order);
     if output.impacts.len() < 2 {
         return;
     }
-    sort(output, bodies, order);
+    list(output, &state.bodies, order);
+    find_later(output, order);
     let ImpactOrder { by_body, later, hidden } = order;
     for impact in &*later {
         let impact = &output.impacts[*impact as usize];
@@ -47,17 +57,46 @@ pub(super) fn withdraw_later_ones(
     }
 }
 
-/// Sorts the impacts by body and time, and lists those that are later than the first one of a body.
-fn sort(output: &NarrowPhaseOutput, bodies: &Arena<Body, BodyId>, order: &mut ImpactOrder) {
-    let ImpactOrder { by_body, later, hidden } = order;
+/// Sorts the impacts of dynamic bodies by body and time.
+fn list(output: &NarrowPhaseOutput, bodies: &Arena<Body, BodyId>, order: &mut ImpactOrder) {
+    let by_body = &mut order.by_body;
     by_body.clear();
-    later.clear();
-    hidden.clear();
     for (index, impact) in (0u32..).zip(&output.impacts) {
         let dynamic = impact.bodies.into_iter().filter(|&body| bodies.at(body).is_dynamic());
         by_body.extend(dynamic.map(|body| (body, impact.fraction, index)));
     }
     by_body.sort_unstable();
+}
+
+/// Adds the contacts of the listed bodies whose shapes touch at the start of the tick, and approach in the tick by more
+/// than the touching distance. They are impacts at the start of the tick.
+fn add_touching(output: &mut NarrowPhaseOutput, motion: &MotionCache, touching: Step, order: &ImpactOrder) {
+    let NarrowPhaseOutput { manifolds, touching: contacts, impacts, .. } = output;
+    let is_listed = |body: u32| order.by_body.binary_search_by_key(&body, |&(body, ..)| body).is_ok();
+    for pair in contacts.iter().filter(|pair| is_listed(pair.bodies.0) || is_listed(pair.bodies.1)) {
+        let manifold = manifolds[pair.manifold as usize];
+        let motions = [pair.shapes.0, pair.shapes.1].map(|shape| motion.motion(motion.shape(shape)));
+        let closing_at = approach(motions[0], motions[1], &manifold);
+        let hits = |point: &ManifoldPoint| {
+            point.separation <= touching && closing_at(point) > i64::from(touching.to_bits())
+        };
+        if manifold.points().iter().any(hits) {
+            impacts.push(PendingImpact {
+                manifold: pair.manifold,
+                contact: pair.contact,
+                bodies: [pair.bodies.0, pair.bodies.1],
+                fraction: Unit::ZERO,
+                start: (manifold, KeptManifold::NONE),
+            });
+        }
+    }
+}
+
+/// Lists the impacts that are later than the first one of a body.
+fn find_later(output: &NarrowPhaseOutput, order: &mut ImpactOrder) {
+    let ImpactOrder { by_body, later, hidden } = order;
+    later.clear();
+    hidden.clear();
     for of_body in by_body.chunk_by(|a, b| a.0 == b.0) {
         let (_, first, _) = of_body[0];
         let impacts = of_body.iter().map(|&(.., impact)| impact);

@@ -47,7 +47,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
         0
     });
     cache.finish(&solver.threads);
-    first_impacts::withdraw_later_ones(&mut contacts, &state.bodies, cache);
+    first_impacts::withdraw_later_ones(&mut contacts, state, shapes.poses(), margins.touching, cache);
     state.contacts = contacts;
 }
 
