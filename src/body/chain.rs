@@ -49,7 +49,7 @@ impl<'a> Chain<'a> {
 
     /// Makes the chain solid only from its right side, looking from its first point towards its last. A
     /// counter-clockwise loop is then solid from outside, and ground whose points run from right to left is solid from
-    /// above. A shape whose centre is on the left side passes through.
+    /// above. A shape passes through if the mean of its vertices is on the left side.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;

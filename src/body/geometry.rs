@@ -86,7 +86,8 @@ pub enum Sides {
     /// Both sides.
     #[default]
     Both,
-    /// The right side, looking from `a` to `b`. A shape whose centre is on the left passes through.
+    /// The right side, looking from `a` to `b`. A shape passes through if the mean of its vertices is on the left. The
+    /// links next to a corner decide together which side a place beside the corner is on.
     Right,
 }
 

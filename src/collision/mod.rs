@@ -18,7 +18,7 @@ pub(crate) use narrow_phase::{
     collide_near, is_ghost, is_open, margin_for, may_meet, pass_direction,
 };
 pub(crate) use query::{
-    RelativePose, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray,
+    Distance, RelativePose, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray,
     cast_shape, contains_point, distance, first_impact, first_overlap, goes_against, normal_at, overlap,
     time_of_impact,
 };

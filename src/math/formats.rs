@@ -31,21 +31,28 @@ pub type Rate = FixedI32<U18>;
 /// Friction limit of a tangent row per unit of the normal impulse: ±2048, resolution 9.5e-7.
 pub type FrictionRatio = FixedI32<U20>;
 
-/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` is at most 63. With a shift of 1, `x` must be
-/// below `i64::MAX`, for which the addition of the rounding constant would overflow.
+/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` is at most 63.
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Drops all but one of the `shift` bits before the addition, so that the addition can overflow only with a shift of
-    // 1.
-    if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
+    // Drops all but one of the `shift` bits before the addition, so that the addition could overflow only with a shift
+    // of 1.
+    match shift {
+        0 => x,
+        1 => (x >> 1) + (x & 1),
+        _ => ((x >> (shift - 1)) + 1) >> 1,
+    }
 }
 
-/// [`round_shift`] for 128-bit intermediates. `shift` is at most 127. With a shift of 1, `x` must be below `i128::MAX`.
+/// [`round_shift`] for 128-bit intermediates. `shift` is at most 127.
 #[inline]
 #[must_use]
 pub const fn round_shift_wide(x: i128, shift: u32) -> i128 {
-    if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
+    match shift {
+        0 => x,
+        1 => (x >> 1) + (x & 1),
+        _ => ((x >> (shift - 1)) + 1) >> 1,
+    }
 }
 
 /// Saturates to `i32`.
@@ -117,6 +124,19 @@ pub fn mul_add<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
     let ax = i64::from(a.to_bits()) * i64::from(x.to_bits());
     let by = i64::from(b.to_bits()) * i64::from(y.to_bits());
     FixedI32::from_bits(saturate(round_shift(ax.saturating_add(by), const { shift::<A, B, C>() })))
+}
+
+/// `a x - b y`, rounded once, saturated.
+#[inline]
+pub(super) fn mul_sub<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
+    a: FixedI32<A>,
+    x: FixedI32<B>,
+    b: FixedI32<A>,
+    y: FixedI32<B>,
+) -> FixedI32<C> {
+    let ax = i64::from(a.to_bits()) * i64::from(x.to_bits());
+    let by = i64::from(b.to_bits()) * i64::from(y.to_bits());
+    FixedI32::from_bits(saturate(round_shift(ax.saturating_sub(by), const { shift::<A, B, C>() })))
 }
 
 /// Bits to drop from a product to reach format `C`.

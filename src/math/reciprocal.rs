@@ -58,7 +58,8 @@ impl Reciprocal {
         Self::of(Fx::from_bits((n as i64) << 32))
     }
 
-    /// `a / x`, rounded once, saturated.
+    /// The product of `a` and the reciprocal, rounded once, saturated. It differs from `a / x` by at most 2^-31 of its
+    /// value, plus the rounding error. A reciprocal of a power of two is too small by 2^-31 of its value.
     #[inline]
     #[must_use]
     pub fn times<A: LeEqU32, B: LeEqU32>(self, a: FixedI32<A>) -> FixedI32<B> {
@@ -71,7 +72,7 @@ impl Reciprocal {
         })
     }
 
-    /// `a / x`, rounded once, saturated.
+    /// [`Reciprocal::times`] for world format.
     #[inline]
     pub(crate) fn times_wide(self, a: Fx) -> Fx {
         let product = i128::from(a.to_bits()) * i128::from(self.mantissa);

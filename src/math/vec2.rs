@@ -9,7 +9,8 @@ use fixed::types::extra::LeEqU32;
 use serde::{Deserialize, Serialize};
 
 use super::formats::{
-    Fx, Unit, convert, fx_mul, mul, mul_add, narrow, round_product, round_shift_wide, saturate_wide, widen,
+    Fx, Unit, convert, fx_mul, mul, mul_add, mul_sub, narrow, round_product, round_shift_wide, saturate_wide,
+    widen,
 };
 
 /// A vector or a point. Sums and differences saturate.
@@ -156,7 +157,7 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
     #[inline]
     #[must_use]
     pub fn cross<B: LeEqU32, C: LeEqU32>(self, other: Vec2<FixedI32<B>>) -> FixedI32<C> {
-        mul_add(self.x, other.y, self.y.saturating_neg(), other.x)
+        mul_sub(self.x, other.y, self.y, other.x)
     }
 
     /// `self s`, rounded once, saturated.
@@ -288,6 +289,17 @@ mod tests {
         assert_eq!(corner.cross(corner.perp()), Fx::MAX);
         let corner = Vec2::new(Unit::MIN, Unit::MIN);
         assert_eq!(corner.dot::<_, fixed::types::extra::U30>(corner), Unit::MAX);
+    }
+
+    #[test]
+    fn a_cross_product_of_the_least_number_is_exact() {
+        use fixed::types::extra::{U0, U32};
+        let (a, b) = (FixedI32::<U0>::MIN, FixedI32::<U32>::MIN);
+        let zero = FixedI32::ZERO;
+        // Half of the least number, which is -2^31.
+        let expected = FixedI32::<U0>::from_num(-(1i64 << 30));
+        assert_eq!(Vec2::new(zero, a).cross::<U32, U0>(Vec2::new(b, FixedI32::ZERO)), expected);
+        assert_eq!(Vec2::new(a, zero).cross::<U32, U0>(Vec2::new(FixedI32::ZERO, b)), -expected);
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 mod casts;
 mod churn;
+mod contacts;
 mod extremes;
+mod one_sided;
 mod oracle;
 mod single;
 

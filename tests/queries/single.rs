@@ -235,6 +235,30 @@ fn times_of_impact_are_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 300 && overlaps > 100, "{hits} {misses} {overlaps}");
 }
 
+/// Products of far ends with a unit normal have large errors, so that a line is clipped whichever shape it is.
+#[test]
+fn times_of_impact_with_a_line_across_the_world_do_not_depend_on_the_order() {
+    let mut rng = Rng::new(6);
+    for _ in 0..300 {
+        let mut far = || Vec2::new(fx!(1000000000), rng.range(fx!(-300000000), fx!(300000000)));
+        let ends = [-far(), far()];
+        let line =
+            Probe::new(Geometry::segment(ends[0], ends[1]).expect("valid"), Vec2::ZERO).expect("valid");
+        let near = closest_point_on_segment(Vec2::ZERO, ends[0], ends[1]);
+        let ball = Probe::new(Geometry::circle(fx!(0.5)).expect("valid"), near + Vec2::new(fx!(0.5), fx!(3)));
+        let ball = ball.expect("valid");
+        let by = Displacement { translation: Vec2::new(fx!(1), fx!(-8)), turns: rng.range(fx!(-1), fx!(1)) };
+        let rest = Displacement::default();
+        let TimeOfImpact::Hit { fraction } = ball.time_of_impact(by, &line, rest) else { panic!("a hit") };
+        let there = ball.at(ball.position() + by.translation.scale(fraction));
+        let gap = there.distance(&line).distance;
+        assert!(gap > fx!(0.00009) && gap < fx!(0.00016), "{gap} {ends:?}");
+        let swapped = line.time_of_impact(rest, &ball, by);
+        let TimeOfImpact::Hit { fraction: other } = swapped else { panic!("{swapped:?} {ends:?}") };
+        assert!((other - fraction).abs() < fx!(0.000001), "{other} {fraction} {ends:?}");
+    }
+}
+
 /// A shape of the world answers like a probe with its geometry and pose.
 #[test]
 fn a_probe_of_a_shape_is_at_its_pose() {

@@ -6,7 +6,7 @@ mod ray;
 mod shape_cast;
 mod time_of_impact;
 
-pub(crate) use distance::{distance, overlap};
+pub(crate) use distance::{Distance, distance, overlap};
 pub(crate) use immersion::{RelativePose, Ring};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, TOLERANCE as SKIN_TOLERANCE, cast_shape, goes_against};

@@ -55,9 +55,14 @@ impl Sweep {
 
     /// Displacement and rotation from the start to a fraction of the tick.
     pub(crate) fn at(&self, fraction: Fx) -> (Vec2<Fx>, Rot) {
-        let turned = round_shift_wide(i128::from(self.turn) * i128::from(fraction.to_bits()), Fx::FRAC_NBITS);
-        let rotation = Rot::from_angle(Angle::from_turns(Fx::from_bits(saturate_wide(turned))));
+        let rotation = Rot::from_angle(Angle::from_turns(Fx::from_bits(self.turned(fraction))));
         ((self.end - self.start).scale(fraction), rotation)
+    }
+
+    /// Rotation from the start to a fraction of the tick, in units of 2^-32 turn.
+    pub(crate) fn turned(&self, fraction: Fx) -> i64 {
+        let turned = i128::from(self.turn) * i128::from(fraction.to_bits());
+        saturate_wide(round_shift_wide(turned, Fx::FRAC_NBITS))
     }
 }
 
@@ -181,17 +186,20 @@ fn swept_pair(
 ) -> Result<(SweptShape, SweptShape), Unswept> {
     let between = sweep_b.start - sweep_a.start;
     let moved = (sweep_b.end - sweep_b.start).length().saturating_add((sweep_a.end - sweep_a.start).length());
-    let reach_b = to_fx(b.reach());
-    let reach = moved.saturating_add(reach_b).saturating_add(radii(a, b)).saturating_add(target);
-    let Some(support_a) = near(a, sweep_a, between, reach.saturating_add(Fx::ONE)) else {
-        return Err(Unswept::Apart);
+    let range = moved.saturating_add(radii(a, b)).saturating_add(target);
+    // The part of a shape that may meet the other, and its reach.
+    let part = |shape, sweep, to_other, reach: Fx| {
+        let part = near(shape, sweep, to_other, range.saturating_add(reach).saturating_add(Fx::ONE))?;
+        Some((part, to_fx(part.reach())))
     };
-    let reach_a = to_fx(support_a.reach());
-    if between.is_longer_than(reach.saturating_add(reach_a)) {
+    let part_a = part(a, sweep_a, between, to_fx(b.reach()));
+    let (support_a, reach_a) = part_a.ok_or(Unswept::Apart)?;
+    let (support_b, reach_b) = part(b, sweep_b, -between, reach_a).ok_or(Unswept::Apart)?;
+    if between.is_longer_than(range.saturating_add(reach_a).saturating_add(reach_b)) {
         return Err(Unswept::Apart);
     }
     let swept_a = SweptShape::new(support_a, reach_a, sweep_a, -between);
-    swept_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)).ok_or(Unswept::TooFast)
+    swept_a.zip(SweptShape::new(support_b, reach_b, sweep_b, Vec2::ZERO)).ok_or(Unswept::TooFast)
 }
 
 fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx, policy: StartPolicy) -> TimeOfImpact {
@@ -245,16 +253,17 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// If A is a segment and does not rotate, clips A to the square with half side `window` about `b`, the centre of B. B
-/// cannot meet the rest of the segment, and products of its far ends with a unit normal would have too large errors.
-/// `None` if no part of the segment is left. Returns other shapes unchanged.
-fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
-    match *a.points() {
+/// If a shape is a segment and does not rotate, clips it to the square with half side `window` about `other`, which is
+/// the centre of the other shape. The other shape cannot meet the rest of the segment, and products of its far ends
+/// with a unit normal would have too large errors. `None` if no part of the segment is left. Returns other shapes
+/// unchanged.
+fn near(shape: &SupportShape, sweep: &Sweep, other: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
+    match *shape.points() {
         [p, q] if sweep.turn == 0 => {
-            let (p, q) = clip(from_grid(p), from_grid(q), b, window)?;
-            Some(SupportShape::from_points([p + b, q + b], to_fx(a.radius)))
+            let (p, q) = clip(from_grid(p), from_grid(q), other, window)?;
+            Some(SupportShape::from_points([p + other, q + other], to_fx(shape.radius)))
         }
-        _ => Some(*a),
+        _ => Some(*shape),
     }
 }
 

@@ -45,6 +45,12 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
+    /// Whether a place is on the solid side of the line through the link. This decides for rays: a ray that meets the
+    /// link comes from the side of the line on which it starts.
+    pub(crate) fn is_facing(&self, place: Vec2<Fx>) -> bool {
+        self.sides == Sides::Both || right_of(self.a, self.b, place)
+    }
+
     /// Whether the link is solid for a shape whose centre is at `place`. A place on the right of a neighbour but on the
     /// left of this link counts only up to the neighbour's far end. Beyond that end, the place may be on the left of
     /// the chain.

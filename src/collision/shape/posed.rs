@@ -319,6 +319,25 @@ impl PosedShape {
         }
     }
 
+    /// Whether a ray from a place can meet the shape: false behind a one-sided link.
+    pub(crate) fn is_facing(&self, place: Vec2<Fx>) -> bool {
+        match &self.outline {
+            Outline::Link(link) => link.is_facing(place - self.centre),
+            _ => true,
+        }
+    }
+
+    /// Whether the shape stops another, whose middle is at one place at the start of a cast and at another place at the
+    /// hit. A shape behind a neighbour of a one-sided link may pass through the neighbour before it meets the link.
+    pub(crate) fn stops(&self, start: Vec2<Fx>, at_hit: Vec2<Fx>) -> bool {
+        self.is_solid_from(start) || self.is_facing(start) && self.is_solid_from(at_hit)
+    }
+
+    /// Whether the shape may stop another in a cast that starts with the other's middle at a place.
+    pub(crate) fn may_stop(&self, start: Vec2<Fx>) -> bool {
+        self.is_solid_from(start) || self.is_facing(start)
+    }
+
     pub(crate) fn of_geometry(geometry: &Geometry, centre: Vec2<Fx>, rotation: Rot) -> Self {
         let (outline, bounds) = match geometry {
             Geometry::Circle { radius } => {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::fx;
+use fixed::types::extra::U31;
 
 #[test]
 fn rounds_to_nearest_on_both_sides_of_zero() {
@@ -25,6 +26,10 @@ fn saturates_instead_of_wrapping() {
     let product: Speed = mul(big, Ratio::MIN);
     assert_eq!(product, Speed::MIN);
     assert_eq!(narrow::<U27>(Fx::from_num(1000)), Step::MAX);
+    assert_eq!(narrow::<U31>(Fx::MAX), FixedI32::<U31>::MAX);
+    assert_eq!(narrow::<U31>(Fx::MIN), FixedI32::<U31>::MIN);
+    assert_eq!(round_shift(i64::MAX, 1), 1 << 62);
+    assert_eq!(round_shift_wide(i128::MAX, 1), 1 << 126);
     assert_eq!(fx_mul(Fx::MAX, Fx::MIN), Fx::MIN);
     assert_eq!(fx_div(Fx::MAX, fx!(0.25)), Some(Fx::MAX));
     assert_eq!(fx_div(Fx::MAX, Fx::ZERO), None);

@@ -69,8 +69,8 @@ pub struct CastHit {
 }
 
 impl World {
-    /// Returns the first shape that a ray meets, from a point along a translation in metres. Chain links that are solid
-    /// from one side let rays from the other side pass.
+    /// Returns the first shape that a ray meets, from a point along a translation in metres. A chain link that is solid
+    /// from one side lets rays pass that start on the other side of the line through the link.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -180,12 +180,13 @@ impl World {
         let mut interest = Unit::ONE;
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
             let posed = self.scratch.shapes.poses().at(slot);
-            let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(middle)) else {
+            let Some(shape) = self.seen(slot, filter).filter(|_| posed.may_stop(middle)) else {
                 return interest;
             };
             let other = SupportShape::of(posed, origin);
             let found =
                 first_touch([&other, &moving], || resting.as_ref(), translation, filter.initial_overlap)
+                    .filter(|hit| posed.stops(middle, middle + hit.travelled))
                     .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
             if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
                 let starts_inside = fraction == Fx::ZERO && distance(&other, &moving).distance < Fx::ZERO;
@@ -212,7 +213,7 @@ impl World {
         let area = Aabb::new(origin, origin).expanded(SLACK);
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
             let posed = self.scratch.shapes.poses().at(slot);
-            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_facing(origin)) {
                 let support = SupportShape::of(posed, origin);
                 if let Some(hit) = cast_ray(&support, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);

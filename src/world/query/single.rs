@@ -114,7 +114,7 @@ impl Probe {
     }
 
     /// Returns where a ray from a point in the world along a translation, in metres, meets the shape. A chain link that
-    /// is solid from one side lets rays from the other side pass.
+    /// is solid from one side lets rays pass that start on the other side of the line through the link.
     #[must_use]
     #[doc(alias = "raycast")]
     pub fn cast_ray(
@@ -123,7 +123,7 @@ impl Probe {
         translation: impl Into<Vec2<Fx>>,
     ) -> Option<ProbeHit> {
         let (origin, translation) = (origin.into(), translation.into());
-        if !self.posed().is_solid_from(origin) {
+        if !self.posed().is_facing(origin) {
             return None;
         }
         let hit = cast_ray(&self.support(origin), Vec2::ZERO, translation)?;
@@ -143,11 +143,12 @@ impl Probe {
         let translation = translation.into();
         let origin = self.position();
         let own = self.support(origin);
-        if !other.posed().is_solid_from(origin + own.middle()) {
-            return None;
-        }
+        let (posed, middle) = (other.posed(), origin + own.middle());
         let other = other.support(origin);
         let hit = cast_shape(&other, &own, translation)?;
+        if !posed.stops(middle, middle + hit.travelled) {
+            return None;
+        }
         let starts_inside = hit.fraction == Fx::ZERO && distance(&other, &own).distance < Fx::ZERO;
         Some(ProbeHit {
             fraction: hit.fraction,

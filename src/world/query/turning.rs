@@ -58,7 +58,7 @@ impl World {
         let mut interest = Unit::ONE;
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
             let posed = self.scratch.shapes.poses().at(slot);
-            let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(middle)) else {
+            let Some(shape) = self.seen(slot, filter).filter(|_| posed.may_stop(middle)) else {
                 return interest;
             };
             if let Some(fraction) = turning.first_touch(posed, resting.as_ref(), filter.initial_overlap) {
@@ -93,21 +93,44 @@ impl Turning {
                 return (overlap == InitialOverlap::Report).then_some(Fx::ZERO);
             }
         }
-        let fraction = self.touch(&a, other.centre, &self.sweep)?;
-        if let Some(Resting { lifts, translation, .. }) = resting {
-            for &lift in lifts {
-                let start = self.sweep.start + lift;
-                self.touch(&a, other.centre, &Sweep { start, end: start + *translation, ..self.sweep })?;
-            }
-        }
-        Some(fraction)
+        let fraction = self.touch(&a, other.centre, StartPolicy::Resist)?;
+        let (travelled, turned) = self.sweep.at(fraction);
+        let (start, middle) = (self.sweep.start, self.support.rotated(turned).middle());
+        let is_stopped = other.stops(start + self.support.middle(), start + travelled + middle)
+            && resting.is_none_or(|resting| self.confirms(resting, other, fraction));
+        is_stopped.then_some(fraction)
+    }
+
+    /// Whether a touch is not only a seam.
+    fn confirms(&self, resting: &Resting, other: &PosedShape, fraction: Fx) -> bool {
+        let origin = self.sweep.start;
+        let (travelled, turned) = self.sweep.at(fraction);
+        let support = self.support.rotated(turned);
+        let there = support.moved(to_grid(travelled));
+        let a = SupportShape::of(other, origin);
+        // The search finds a shape that the probe touches at the start only where the probe has come closer to it. How
+        // far a lift may move the probe off such a shape therefore depends on the start.
+        let start = distance(&a, &self.support);
+        let (met, found) = if resting.touches(start.distance) {
+            (self.support, start)
+        } else {
+            (there, distance(&a, &there))
+        };
+        let (lifts, way) = resting.second_casts(travelled, [&a, &met], &found);
+        let turn = self.sweep.turn - self.sweep.turned(fraction);
+        let a = SupportShape::of(other, other.centre);
+        lifts.iter().all(|&lift| {
+            let start = origin + travelled + lift;
+            let again = Turning { support, sweep: Sweep { start, end: start + way, turn } };
+            again.touch(&a, other.centre, StartPolicy::Report).is_some()
+        })
     }
 
     /// Fraction of the first touch. If the search gives up, the fraction that it has reached counts as a hit. Otherwise
     /// the probe might pass through a shape.
-    fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, sweep: &Sweep) -> Option<Fx> {
+    fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, policy: StartPolicy) -> Option<Fx> {
         let still = Sweep::fixed(centre);
-        match first_impact((other, &still), (&self.support, sweep), SKIN, StartPolicy::Resist) {
+        match first_impact((other, &still), (&self.support, &self.sweep), SKIN, policy) {
             TimeOfImpact::Separated => None,
             TimeOfImpact::Hit { fraction } | TimeOfImpact::Failed { fraction } => Some(fraction),
             TimeOfImpact::Overlapped => Some(Fx::ZERO),
