@@ -6,7 +6,7 @@ use lockstep2d::draw::{
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
-use lockstep2d::solver::{Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Weld, Wheel};
+use lockstep2d::solver::{Distance, Gear, JointDef, JointKind, Motor, Prismatic, Revolute, Weld, Wheel};
 use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
@@ -225,6 +225,27 @@ fn sensors_are_no_overlap_and_what_a_joint_allows_is_no_gap() {
     assert!(gaps.len() == 1 && (gaps[0] - error).abs() < fx!(0.0001), "{gaps:?}, not {error}");
     world.disable_joint(id).unwrap();
     assert_eq!(world.widest_joint_gap(), Fx::ZERO, "a disabled joint holds nothing together");
+}
+
+#[test]
+fn the_error_of_a_gear_without_a_pitch_point_is_an_angle() {
+    for (teeth_b, unit) in [(-20, " mrad"), (40, " mm")] {
+        let mut world = World::default();
+        let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+        let [a, b] = [fx!(0), fx!(3)].map(|x| {
+            world.spawn(&BodyDef::dynamic().position((x, fx!(0))), std::slice::from_ref(&disc)).unwrap()
+        });
+        let turned = JointDef::new(a, b, Gear::new(20, teeth_b)).angle_b(Angle::from_radians(fx!(0.01)));
+        let id = world.add_joint(&turned).unwrap();
+        let is_angle = teeth_b == -20;
+        assert_eq!(world.joint_error_is_angle(id), Some(is_angle));
+        let error = world.joint_error(id).unwrap();
+        assert!(error > fx!(0.01), "{error}");
+        assert_eq!(world.widest_joint_gap(), if is_angle { Fx::ZERO } else { error });
+        let drawn = primitives(&world, Layers { joint_errors: true, ..Layers::NONE });
+        let Form::Label { text, .. } = &drawn[0].form else { panic!("expected a label: {drawn:?}") };
+        assert!(text.ends_with(unit), "{text}");
+    }
 }
 
 fn length_of(primitive: &Primitive) -> Fx {

@@ -16,8 +16,9 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     };
     let mut add = |style, form| found(primitive(style, Subject::Joint(id), form));
     if let Some(error) = world.joint_error(id).filter(|_| layers.joint_errors) {
-        let millimetres = error.saturating_mul_int(1000);
-        add(Style::JointError, Form::Label { at: anchor_b, text: format!("{millimetres:.2} mm") });
+        let unit = if world.joint_error_is_angle(id) == Some(true) { "mrad" } else { "mm" };
+        let text = format!("{:.2} {unit}", error.saturating_mul_int(1000));
+        add(Style::JointError, Form::Label { at: anchor_b, text });
     }
     if !layers.joints {
         return;

@@ -48,9 +48,9 @@ pub(crate) enum CommandError {
         path: PathBuf,
         verdict: Verdict,
     },
-    /// The game panics while a replay is played.
+    /// The game panics while one of these files is played.
     Panicked {
-        path: PathBuf,
+        paths: Vec<PathBuf>,
         panic: Panic,
         ticks: Option<u64>,
     },
@@ -192,8 +192,9 @@ impl fmt::Display for CommandError {
                 write!(f, "there is no scene {name:?}; there are {}", known.join(", "))
             }
             CommandError::Record(error) => write!(f, "cannot record: {error}"),
-            CommandError::Panicked { path, panic, ticks } => {
-                write!(f, "{}: {}", Shown(path), PanicText { panic, ticks: *ticks })
+            CommandError::Panicked { paths, panic, ticks } => {
+                let paths: Vec<_> = paths.iter().map(|path| Shown(path).to_string()).collect();
+                write!(f, "{}: {}", paths.join(" or "), PanicText { panic, ticks: *ticks })
             }
             CommandError::Reversed { from, to } => write!(f, "--from {from} is after --to {to}"),
             CommandError::NoSuchTick { path, tick, ticks } => {

@@ -5,7 +5,7 @@ use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Once;
 
 use crate::context::CommandResult;
@@ -49,8 +49,15 @@ thread_local! {
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
     /// Location of the last caught panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
+    /// The files whose ticks the command on this thread is playing.
+    static FILES: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
     /// Number of ticks that the command on this thread has played, if it counts them.
     static TICKS: Cell<Option<u64>> = const { Cell::new(None) };
+}
+
+/// Records which files are played from now on, for the error of [`guard`].
+pub(crate) fn playing(files: &[&Path]) {
+    FILES.set(files.iter().map(|file| file.to_path_buf()).collect());
 }
 
 /// Records the number of played ticks, for the error of [`guard`].
@@ -83,11 +90,13 @@ fn listen() {
     });
 }
 
-/// Runs a command. A panic of the game stops the command with an error that names the file.
-pub(crate) fn guard(path: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
+/// Runs a command that plays a file. A panic of the game stops the command with an error that names this file, or the
+/// files of the last call of [`playing`].
+pub(crate) fn guard(file: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
+    playing(&[file]);
     TICKS.set(None);
     catch(command).unwrap_or_else(|panic| {
-        Err(CommandError::Panicked { path: path.to_path_buf(), panic, ticks: TICKS.get() })
+        Err(CommandError::Panicked { paths: FILES.take(), panic, ticks: TICKS.get() })
     })
 }
 

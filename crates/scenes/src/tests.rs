@@ -39,6 +39,8 @@ fn benchmarks_have_the_size_that_they_have_elsewhere() {
     ] {
         assert_eq!(counts(open(name).world()), size, "{name}");
     }
+    let about = Scene::find("joint_grid").unwrap().about;
+    assert!(about.contains("19 794 hinges"), "{about}");
 }
 
 /// Executes the commands of the script without stepping the world.

@@ -18,7 +18,7 @@ pub enum Event {
     Up(Button),
     /// Number of notches by which the wheel was turned. Positive if turned away from the user.
     Wheel(f32),
-    /// A file was dropped on the window.
+    /// A file was dropped on the window. Not sent by a window of Windows.
     Dropped {
         /// File name, for display.
         name: String,

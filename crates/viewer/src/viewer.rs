@@ -6,7 +6,6 @@ use std::rc::Rc;
 use lockstep2d::draw::Layers;
 use lockstep2d::inspect::fields;
 use lockstep2d::lockstep::Game;
-#[cfg(not(target_arch = "wasm32"))]
 use lockstep2d::peer::PeerOptions;
 use lockstep2d::replay::Limits;
 use serde::Serialize;
@@ -186,11 +185,14 @@ impl<G: Game + 'static> Viewer<G> {
 
     /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. A match plays the scene of
     /// `--scene`. Without this argument, it plays the first scene with a setup. `--lockstep`, `--rollback` and
-    /// `--players` override `options`.
-    #[cfg(not(target_arch = "wasm32"))]
+    /// `--players` override `options`. Has no effect on a web page, which has neither sockets nor arguments.
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {
-        Viewer { online: Some(options), ..self }
+        #[cfg(not(target_arch = "wasm32"))]
+        let viewer = Viewer { online: Some(options), ..self };
+        #[cfg(target_arch = "wasm32")]
+        let (viewer, _) = (self, options);
+        viewer
     }
 
     /// Runs the program with the arguments of this process, until its window is closed. On a web page, returns at once.

@@ -162,6 +162,12 @@ impl Joint {
             _ => return None,
         })
     }
+
+    /// Whether [`Self::coupling_error`] is in radians.
+    pub(crate) fn is_coupling_error_angle(&self, a: &Body, b: &Body) -> bool {
+        let is_angle = |gear: &Gear| pitch_per_tooth(gear, self.def.gap(a, b)).is_none();
+        matches!(&self.def.kind, JointKind::Gear(gear) if is_angle(gear))
+    }
 }
 
 /// The error of the mesh, up to whole teeth, as an angle: a full turn of this angle is one tooth.

@@ -79,11 +79,20 @@ impl World {
         }
     }
 
-    /// Returns the largest [error](World::joint_error) of enabled joints, in metres or radians; 0 without joints.
+    /// Returns whether [`World::joint_error`] is an angle in radians, as for a gear without a pitch point.
+    #[must_use]
+    pub fn joint_error_is_angle(&self, id: JointId) -> Option<bool> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        Some(joint.is_coupling_error_angle(a, b))
+    }
+
+    /// Returns the largest [error](World::joint_error) of enabled joints in metres; 0 without joints. Errors that are
+    /// angles do not count.
     #[must_use]
     pub fn widest_joint_gap(&self) -> Fx {
         let enabled = self.joints().filter(|(_, joint)| joint.def().enabled);
-        enabled.filter_map(|(id, _)| self.joint_error(id)).fold(Fx::ZERO, Fx::max)
+        let lengths = enabled.filter(|&(id, _)| self.joint_error_is_angle(id) == Some(false));
+        lengths.filter_map(|(id, _)| self.joint_error(id)).fold(Fx::ZERO, Fx::max)
     }
 
     /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor,

@@ -9,6 +9,7 @@ use lockstep2d::report::bisect;
 use super::diff;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
+use crate::panics;
 
 /// Find the tick, stage, body and field in which two runs first differ
 #[derive(Args, Debug)]
@@ -33,6 +34,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let a = diff::read(&arguments.a, context)?;
     let b = arguments.b.as_ref().map(|b| diff::read(b, context)).transpose()?;
+    if let Some(b) = &arguments.b {
+        panics::playing(&[&arguments.a, b]);
+    }
     let found = bisect::<G>(&a, b.as_ref(), context.limits()).map_err(CommandError::Compare)?;
     let other = arguments.b.as_deref().unwrap_or(Path::new("this program"));
     arguments.printed.print(&found, [&arguments.a, other], &mut context.console)

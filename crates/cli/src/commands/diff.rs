@@ -10,6 +10,7 @@ use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
+use crate::panics;
 
 pub(super) mod json;
 mod text;
@@ -59,6 +60,7 @@ impl Printed {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (a, b) = (read(&arguments.a, context)?, read(&arguments.b, context)?);
+    panics::playing(&[&arguments.a, &arguments.b]);
     let found = compare::<G>(&a, &b, context.limits()).map_err(CommandError::Compare)?;
     arguments.printed.print(&found, [&arguments.a, &arguments.b], &mut context.console)
 }

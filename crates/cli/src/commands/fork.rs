@@ -14,6 +14,7 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
 use crate::output_file::{OutputFile, Overwrite};
+use crate::panics;
 use crate::rewriting::{Copy, CopyError};
 
 /// Write a replay with the beginning of another one and a different end
@@ -62,6 +63,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     if let Some(path) = &arguments.then {
         play_lines(&mut copy, path, arguments, limits)?;
     }
+    panics::playing(&[&arguments.output]);
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
     // Records at most one tick beyond the limit, because one tick is enough to make the verification fail.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
@@ -102,6 +104,7 @@ fn play_lines<G: Game>(
     arguments: &Arguments,
     limits: &Limits,
 ) -> Result<(), CommandError> {
+    panics::playing(&[path]);
     let read_error = CommandError::read(path);
     let source: Box<dyn Read> = if path == Path::new("-") {
         Box::new(io::stdin().lock())

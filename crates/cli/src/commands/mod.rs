@@ -30,7 +30,7 @@ pub(crate) struct Row<G: Game> {
 }
 
 /// Creates a [`Row`] for each `"name" => module`. If `(argument)` follows the module, a panic of the game becomes an
-/// error that names the file in this argument.
+/// error that names the file in this argument, unless the module says that it plays other files.
 macro_rules! rows {
     ($($name:literal => $module:ident $(($file:ident))?),+ $(,)?) => {
         vec![$(Row {

@@ -119,6 +119,21 @@ fn no_tick_is_played_beyond_a_limit() {
 }
 
 #[test]
+fn a_panic_after_the_kept_ticks_names_the_file_of_the_inputs_or_the_new_replay() {
+    let folder = Folder::new("fork-panic");
+    let (file, new) = (folder.write("a.replay", &replay(35)), folder.path("new.replay"));
+    let heavy = "[{\"add\":120,\"wink\":false},{\"add\":0,\"wink\":false}]\n".repeat(2);
+    let heavy = folder.write("heavy", heavy.as_bytes());
+    let tool = Tool::<Fragile>::new();
+    for (more, named) in [(["--then", &heavy], &heavy), (["--idle", "100"], &new)] {
+        let outcome = run_tool_of(&tool, &[&["fork", &file, "--tick", "20", "-o", &new], &more[..]].concat());
+        assert_eq!(outcome.exit, Exit::NoMatch, "{}", outcome.err);
+        assert!(outcome.err.contains(&format!(" {named}: panicked: the game, at ")), "{}", outcome.err);
+        assert!(!fs::exists(&new).unwrap());
+    }
+}
+
+#[test]
 fn what_cannot_be_forked_is_explained_and_writes_nothing() {
     let folder = Folder::new("unforkable");
     let (file, new) = (folder.write("a.replay", &replay(35)), folder.path("new.replay"));

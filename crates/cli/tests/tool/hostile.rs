@@ -165,6 +165,22 @@ fn a_panic_is_the_error_of_other_commands_too() {
 }
 
 #[test]
+fn a_panic_in_a_comparison_names_both_files() {
+    let folder = Folder::new("panic-both");
+    let bad = folder.write("bad.replay", &fuse(12));
+    // `diff` plays the longer replay.
+    for (command, ticks) in [("bisect", 20), ("diff", 12)] {
+        let good = folder.write("good.replay", &replay(ticks));
+        for [a, b] in [[&good, &bad], [&bad, &good]] {
+            let outcome = run_bomb(&[command, a, b]);
+            let expected = format!(" {a} or {b}: panicked: the game, at ");
+            assert!(outcome.err.contains(&expected), "{command}: {}", outcome.err);
+            assert_eq!(outcome.exit, Exit::NoMatch);
+        }
+    }
+}
+
+#[test]
 fn a_setup_may_panic_as_well() {
     let folder = Folder::new("panic-setup");
     let start = crate::counter::Setup { start: 13, ..setup() };

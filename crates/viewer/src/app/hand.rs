@@ -27,9 +27,9 @@ pub(super) struct Hand {
     begun: Option<Vec2<Fx>>,
 }
 
-fn aim(camera: &Camera, at: [f32; 2]) -> Aim {
-    let way = camera.point([at[0] + REACH, at[1]]) - camera.point(at);
-    Aim { at: camera.point(at), within: way.x }
+fn aim(camera: &Camera, at: Vec2<Fx>) -> Aim {
+    let way = camera.point([REACH, 0.0]) - camera.point([0.0; 2]);
+    Aim { at, within: way.x }
 }
 
 impl Hand {
@@ -37,7 +37,7 @@ impl Hand {
         Form::ALL[self.form % Form::ALL.len()]
     }
 
-    pub(super) fn grab(playground: &mut dyn Playground, camera: &Camera, at: [f32; 2]) {
+    pub(super) fn grab(playground: &mut dyn Playground, camera: &Camera, at: Vec2<Fx>) {
         playground.act(Act::Grab(aim(camera, at)));
     }
 
@@ -67,7 +67,7 @@ impl Hand {
     ) -> bool {
         match key {
             Key::Character('b') => self.form += 1,
-            Key::Character('x') | Key::Delete => playground.act(Act::Delete(aim(camera, at))),
+            Key::Character('x') | Key::Delete => playground.act(Act::Delete(aim(camera, camera.point(at)))),
             Key::Character('e') => playground.act(Act::explode(camera.point(at))),
             Key::Character('g') => {
                 self.gravity = (self.gravity + 1) % GRAVITIES.len();

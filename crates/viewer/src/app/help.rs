@@ -2,57 +2,93 @@
 
 use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 
+use super::layers::LAYER_KEYS;
 use super::theme;
 use crate::event::Key;
 
-/// Row of the help: the keys as text, the keys as values, and their effect. The row is left out if a player of the game
-/// uses one of the keys.
-type Line = (&'static str, &'static [Key], &'static str);
+/// Width of the column of keys, in characters.
+const KEY_COLUMNS: usize = 27;
+/// Width of the whole list, in characters.
+const COLUMNS: usize = 72;
 
-const LINES: &[Line] = &[
-    ("space", &[Key::Space], "play, pause"),
-    ("p", &[Key::Character('p')], "play, pause"),
-    ("left, right", &[Key::Left, Key::Right], "one tick back, forward; ten with shift"),
-    (", .", &[Key::Character(','), Key::Character('.')], "one tick back, forward; ten with shift"),
-    ("page up, down", &[Key::PageUp, Key::PageDown], "one second back, forward"),
-    ("home, end", &[Key::Home, Key::End], "go to the start, to the end"),
-    ("up, down", &[Key::Up, Key::Down], "double, halve the speed"),
-    ("1 ... 0 c v i", &[], "toggle layers; or click them"),
-    ("wheel, + -", &[], "zoom"),
+/// Row of the help: an action of the pointer, or an empty text and the keys with the same effect; and this effect.
+type Row<'a> = (&'static str, &'a [Key], &'static str);
+
+const ROWS: &[Row<'static>] = &[
+    ("", &[Key::Space, Key::Character('p')], "play, pause"),
+    ("", &[Key::Left, Key::Character(',')], "one tick back; ten with shift"),
+    ("", &[Key::Right, Key::Character('.')], "one tick forward; ten with shift"),
+    ("", &[Key::PageUp], "one second back"),
+    ("", &[Key::PageDown], "one second forward"),
+    ("", &[Key::Home], "go to the start"),
+    ("", &[Key::End], "go to the end"),
+    ("", &[Key::Up], "double the speed"),
+    ("", &[Key::Down], "halve the speed"),
+    ("wheel", &[], "zoom"),
+    ("", &[Key::Character('+'), Key::Character('=')], "zoom in"),
+    ("", &[Key::Character('-')], "zoom out"),
     ("drag", &[], "pan"),
-    ("click", &[], "select a body and show all its fields"),
-    ("t", &[Key::Character('t')], "show the state of the game's own rules"),
-    ("f", &[Key::Character('f')], "follow the selected body"),
-    ("r", &[Key::Character('r')], "show the whole scene"),
-    ("j", &[Key::Character('j')], "go to the first difference of two replays"),
-    ("[ ]", &[Key::Character('['), Key::Character(']')], "previous scene, next scene"),
-    ("s", &[Key::Character('s')], "save the recording as a replay"),
-    ("h", &[Key::Character('h')], "this list"),
+    ("click", &[], "select a body and show all its fields, or toggle a layer"),
+    ("", &[Key::Character('t')], "show the state of the game's own rules"),
+    ("", &[Key::Character('f')], "follow the selected body"),
+    ("", &[Key::Character('r')], "show the whole scene"),
+    ("", &[Key::Character('j')], "go to the first difference of two replays"),
+    ("", &[Key::Character('[')], "previous scene"),
+    ("", &[Key::Character(']')], "next scene"),
+    ("", &[Key::Character('s')], "save the recording as a replay"),
+    ("", &[Key::Escape], "close this list and the fields of a body"),
+    ("", &[Key::Character('h')], "this list"),
 ];
 
 /// Rows for a live world that the user can act in.
-const LIVE: &[Line] = &[
-    ("", &[], ""),
-    ("", &[], "in this live world:"),
+const LIVE: &[Row<'static>] = &[
     ("drag", &[], "move a body, and throw it"),
     ("right drag", &[], "draw a new body"),
-    ("b", &[], "form of new bodies: disc, box, polygon, rod"),
-    ("x, delete", &[], "remove the body under the pointer"),
-    ("e", &[], "explosion at the pointer"),
-    ("g", &[], "gravity: down, none, up, left, right"),
+    ("", &[Key::Character('b')], "form of new bodies: disc, box, polygon, rod"),
+    ("", &[Key::Character('x'), Key::Delete], "remove the body under the pointer"),
+    ("", &[Key::Character('e')], "explosion at the pointer"),
+    ("", &[Key::Character('g')], "gravity: down, none, up, left, right"),
 ];
 
+fn name_of(key: Key) -> String {
+    match key {
+        Key::Character(character) => character.to_string(),
+        Key::PageUp => "page up".into(),
+        Key::PageDown => "page down".into(),
+        other => format!("{other:?}").to_lowercase(),
+    }
+}
+
+/// Returns the keys and the effect of each row as text. A key that a player of the game uses has no effect in the
+/// viewer, so it is left out, and so is a row without any other key.
+fn rows(of: &[Row<'_>], players: &[Key]) -> Vec<(String, &'static str)> {
+    let row = |&(pointer, keys, effect): &Row<'_>| {
+        if !pointer.is_empty() {
+            return Some((pointer.to_owned(), effect));
+        }
+        let free = keys.iter().filter(|key| !players.contains(key));
+        let names: Vec<String> = free.map(|&key| name_of(key)).collect();
+        let separator = if names.len() > 2 { " " } else { " or " };
+        (!names.is_empty()).then(|| (names.join(separator), effect))
+    };
+    of.iter().filter_map(row).collect()
+}
+
 pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2], is_live: bool, players: &[Key]) {
-    let is_free = |line: &&Line| line.1.iter().all(|key| !players.contains(key));
-    let live = if is_live { LIVE } else { &[] };
-    let lines: Vec<_> = LINES.iter().chain(live).filter(is_free).collect();
-    let (column, columns) = (width_of("x", 1.0) * 16.0, width_of("x", 1.0) * 64.0);
+    let layers = LAYER_KEYS.map(Key::Character);
+    let mut lines = rows(ROWS, players);
+    lines.extend(rows(&[("", &layers, "toggle layers")], players));
+    if is_live {
+        lines.extend([(String::new(), ""), (String::new(), "in this live world:")]);
+        lines.extend(rows(LIVE, players));
+    }
+    let (column, columns) = (width_of("x", 1.0) * KEY_COLUMNS as f32, width_of("x", 1.0) * COLUMNS as f32);
     let tall = CELL_HEIGHT * lines.len() as f32;
     let corner = [((width - columns) / 2.0).max(8.0), ((height - tall) / 2.0).max(8.0)];
     theme::panel(list, corner, [columns, tall]);
-    for (row, (keys, _, what)) in lines.into_iter().enumerate() {
+    for (row, (keys, effect)) in lines.into_iter().enumerate() {
         let y = corner[1] + row as f32 * CELL_HEIGHT;
-        list.text([corner[0], y], 1.0, theme::ACCENT, *keys);
-        list.text([corner[0] + column, y], 1.0, theme::INK, *what);
+        list.text([corner[0], y], 1.0, theme::ACCENT, keys);
+        list.text([corner[0] + column, y], 1.0, theme::INK, effect);
     }
 }

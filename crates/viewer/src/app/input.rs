@@ -1,5 +1,10 @@
 //! Event handling: maps keys and pointer events to actions of the app.
 
+use lockstep2d::body::BodyId;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::World;
+use lockstep2d_render::Camera;
+
 use crate::event::{Button, Event, Key};
 use crate::live::Act;
 
@@ -32,14 +37,40 @@ impl Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// The button went down at this position. If the pointer moves further than [`CLICK`], the view pans.
-    Pressing([f32; 2]),
+    /// The button went down at the position `from`, and the pointer has stayed within [`CLICK`] of it. When the pointer
+    /// moves further, it drags the body at the grip or, without a grip, pans the view. A release before that is a
+    /// click: it must not act in a live world, because an act at an earlier tick drops the later recorded ticks.
+    Pressing {
+        from: [f32; 2],
+        grip: Option<Grip>,
+    },
     Panning,
     /// The pointer moves along the timeline.
     Scrubbing,
-    /// The pointer drags a body from this position. A release within [`CLICK`] is also a click.
-    Dragging([f32; 2]),
+    /// The pointer drags a body.
+    Dragging,
     Spawning,
+}
+
+/// Point of a dynamic body, in the body's frame. The body may move until the pointer drags it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Grip {
+    body: BodyId,
+    point: Vec2<Fx>,
+}
+
+impl Grip {
+    /// The grip at a screen position. `None` if no dynamic body is there.
+    fn at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<Self> {
+        let id = body_at(world, camera, at)?;
+        let body = world.body(id).filter(|body| body.is_dynamic())?;
+        Some(Grip { body: id, point: body.transform().apply_inverse(camera.point(at)) })
+    }
+
+    /// The gripped point in world coordinates. `None` if the body no longer exists.
+    fn place(self, world: &World) -> Option<Vec2<Fx>> {
+        world.body(self.body).map(|body| body.transform().apply(self.point))
+    }
 }
 
 fn is_click(from: [f32; 2], to: [f32; 2]) -> bool {
@@ -154,41 +185,53 @@ impl App {
             return self.press(key);
         }
         let camera = view.camera(source.world(), *size);
-        let movable = |source: &mut dyn crate::Source| {
-            let world = source.world();
-            body_at(world, &camera, at).is_some_and(|id| world.body(id).is_some_and(|body| body.is_dynamic()))
-        };
+        let is_live = source.playground().is_some();
         pointer.button = Some(button);
         pointer.doing = match button {
-            Button::Left if source.playground().is_some() && movable(source.as_mut()) => Doing::Dragging(at),
-            Button::Left => Doing::Pressing(at),
-            Button::Right if source.playground().is_some() => Doing::Spawning,
+            Button::Left => {
+                let grip = if is_live { Grip::at(source.world(), &camera, at) } else { None };
+                Doing::Pressing { from: at, grip }
+            }
+            Button::Right if is_live => Doing::Spawning,
             Button::Right | Button::Middle => Doing::Panning,
         };
-        match (pointer.doing, source.playground()) {
-            (Doing::Dragging(_), Some(playground)) => Hand::grab(playground, &camera, at),
-            (Doing::Spawning, Some(_)) => hand.begin(&camera, at),
-            _ => {}
+        if pointer.doing == Doing::Spawning {
+            hand.begin(&camera, at);
         }
     }
 
     fn move_to(&mut self, at: [f32; 2]) {
         let before = std::mem::replace(&mut self.pointer.at, at);
-        if let Doing::Pressing(from) = self.pointer.doing
+        if let Doing::Pressing { from, grip } = self.pointer.doing
             && !is_click(from, at)
         {
-            self.pointer.doing = Doing::Panning;
-            self.view.pan([before[0] - from[0], before[1] - from[1]]);
+            match grip {
+                Some(grip) => self.grab(grip),
+                None => {
+                    self.pointer.doing = Doing::Panning;
+                    self.view.pan([before[0] - from[0], before[1] - from[1]]);
+                }
+            }
         }
         match self.pointer.doing {
             Doing::Panning => self.view.pan([at[0] - before[0], at[1] - before[1]]),
             Doing::Scrubbing => self.scrub(),
-            Doing::Dragging(_) => {
+            Doing::Dragging => {
                 let App { source: Some(source), view, size, .. } = self else { return };
                 let camera = view.camera(source.world(), *size);
                 source.playground().into_iter().for_each(|playground| Hand::drag(playground, &camera, at));
             }
-            Doing::Nothing | Doing::Pressing(_) | Doing::Spawning => {}
+            Doing::Nothing | Doing::Pressing { .. } | Doing::Spawning => {}
+        }
+    }
+
+    fn grab(&mut self, grip: Grip) {
+        self.pointer.doing = Doing::Dragging;
+        let App { source: Some(source), view, size, .. } = self else { return };
+        let camera = view.camera(source.world(), *size);
+        let place = grip.place(source.world());
+        if let (Some(place), Some(playground)) = (place, source.playground()) {
+            Hand::grab(playground, &camera, place);
         }
     }
 
@@ -201,13 +244,8 @@ impl App {
         let App { source: Some(source), view, size, hand, pointer, .. } = self else { return };
         let camera = view.camera(source.world(), *size);
         match (doing, source.playground()) {
-            (Doing::Pressing(_), _) => self.select(),
-            (Doing::Dragging(from), Some(playground)) => {
-                playground.act(Act::Release);
-                if is_click(from, pointer.at) {
-                    self.select();
-                }
-            }
+            (Doing::Pressing { .. }, _) => self.select(),
+            (Doing::Dragging, Some(playground)) => playground.act(Act::Release),
             (Doing::Spawning, Some(playground)) => hand.put(playground, &camera, pointer.at),
             _ => {}
         }

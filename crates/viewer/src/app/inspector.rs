@@ -20,6 +20,8 @@ pub(super) struct Inspector {
     pub(super) shows_state: bool,
     /// Number of lines that are scrolled off the top.
     scrolled: usize,
+    /// Number of lines that were last drawn.
+    drawn: usize,
 }
 
 /// Returns the body at a screen position. If no body is there, returns the closest body within [`REACH`]. Sensors are
@@ -48,15 +50,17 @@ impl Inspector {
         (self.shows_state, self.scrolled) = (!self.shows_state, 0);
     }
 
-    /// Upper left corner and size of the panel, in pixels. `None` if there is nothing to show.
-    pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
+    /// Upper left corner and maximum size of the panel, in pixels. `None` if there is nothing to show.
+    fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
         let wide = width_of("x", 1.0) * COLUMNS as f32;
         let is_open = self.body.is_some() || self.shows_state;
         is_open.then(|| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
     }
 
+    /// Whether a position is on the panel as it was last drawn.
     pub(super) fn holds(&self, at: [f32; 2], size: [f32; 2]) -> bool {
-        self.area(size).is_some_and(|([x, y], [width, height])| {
+        let height = CELL_HEIGHT * self.drawn as f32;
+        self.area(size).is_some_and(|([x, y], [width, _])| {
             (x..x + width).contains(&at[0]) && (y..y + height).contains(&at[1])
         })
     }
@@ -82,7 +86,8 @@ impl Inspector {
         let rows = (height / CELL_HEIGHT) as usize;
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(rows));
         let shown = lines.iter().skip(self.scrolled).take(rows);
-        theme::panel(list, corner, [width, CELL_HEIGHT * shown.len() as f32]);
+        self.drawn = shown.len();
+        theme::panel(list, corner, [width, CELL_HEIGHT * self.drawn as f32]);
         for (row, (name, value)) in shown.enumerate() {
             let y = corner[1] + row as f32 * CELL_HEIGHT;
             let colour = if value.is_empty() { theme::ACCENT } else { theme::FAINT };
@@ -123,7 +128,8 @@ pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
     {
         lines.push((format!("joint {joint}"), String::new()));
         if let Some(error) = world.joint_error(joint) {
-            lines.push(("error".into(), format!("{:.3} mm", error.saturating_mul_int(1000))));
+            let unit = if world.joint_error_is_angle(joint) == Some(true) { "mrad" } else { "mm" };
+            lines.push(("error".into(), format!("{:.3} {unit}", error.saturating_mul_int(1000))));
         }
         if let Some((Vec2 { x, y }, torque)) = world.joint_force(joint) {
             lines.push(("force".into(), format!("({x:.2}, {y:.2}) N, {torque:.2} N m")));
@@ -140,4 +146,29 @@ fn add_fields(lines: &mut Vec<(String, String)>, value: &impl serde::Serialize) 
 
 fn clipped(text: &str, columns: usize) -> String {
     text.chars().take(columns).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use lockstep2d::body::{BodyDef, Geometry, ShapeDef, WorldError};
+    use lockstep2d::fx;
+    use lockstep2d::solver::{Gear, JointDef};
+
+    use super::*;
+
+    /// The value of the line "error" of a body with a gear.
+    fn error_of(gear: Gear) -> Result<Option<String>, WorldError> {
+        let mut world = World::default();
+        let disc = ShapeDef::new(Geometry::circle(fx!(0.5))?);
+        let a = world.spawn(&BodyDef::dynamic(), std::slice::from_ref(&disc))?;
+        let b = world.spawn(&BodyDef::dynamic().position((fx!(3), fx!(0))), &[disc])?;
+        world.add_joint(&JointDef::new(a, b, gear))?;
+        Ok(describe(&world, a).into_iter().find(|(name, _)| name == "error").map(|(_, value)| value))
+    }
+
+    #[test]
+    fn an_error_that_is_an_angle_is_in_radians() {
+        let errors = [Gear::new(20, -20), Gear::new(20, 40)].map(|gear| error_of(gear).unwrap().unwrap());
+        assert_eq!(errors, ["0.000 mrad", "0.000 mm"]);
+    }
 }

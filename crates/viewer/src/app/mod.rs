@@ -7,6 +7,7 @@ mod input;
 mod inspector;
 mod layers;
 mod player;
+mod remark;
 mod screen;
 mod theme;
 mod timeline;
@@ -30,6 +31,7 @@ use input::Pointer;
 use inspector::Inspector;
 use layers::LayerList;
 use player::Player;
+use remark::Remark;
 use view::View;
 
 /// The viewer: handles [`Event`](crate::Event)s, advances with elapsed time, and draws into a [`DrawList`].
@@ -52,7 +54,7 @@ pub struct App {
     comparison: Option<Comparison>,
     /// Name and contents of the shown file. A comparison opens the file again.
     file: Option<(String, &'static [u8])>,
-    message: Option<String>,
+    message: Option<Remark>,
     player: Player,
     view: View,
     layers: Layers,
@@ -191,7 +193,10 @@ impl App {
         let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
         let bytes: &'static [u8] = bytes.leak();
         let other = self.noted(name, self.content.open(name, bytes))?;
-        let mut scouts = [self.content.open(&first, first_bytes)?, self.content.open(name, bytes)?];
+        let mut scouts = [
+            self.noted(&first, self.content.open(&first, first_bytes))?,
+            self.noted(name, self.content.open(name, bytes))?,
+        ];
         // The search starts at the first tick that both sources have. A snapshot may start at a later tick than a
         // replay, even after its end.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
@@ -213,7 +218,7 @@ impl App {
         let Some(scene) = self.content.scene(name) else { return false };
         match (scene.open)(seed, &self.content.limits) {
             Ok(source) => self.show(source),
-            Err(error) => self.message = Some(format!("{name}: {error}")),
+            Err(error) => self.message = Some(Remark::error(format!("{name}: {error}"))),
         }
         true
     }
@@ -234,7 +239,7 @@ impl App {
         let Some(source) = &mut self.source else { return };
         source.think();
         if let Err(error) = self.player.advance(time, source.as_mut()) {
-            self.message = Some(error.to_string());
+            self.message = Some(Remark::error(error.to_string()));
         }
         if let Some(comparison) = &mut self.comparison {
             comparison.other.think();
@@ -253,7 +258,7 @@ impl App {
     #[must_use]
     pub fn report(&self) -> Report {
         let Some(source) = &self.source else {
-            let status = self.message.clone().unwrap_or_else(|| "drop a replay here".into());
+            let status = self.message().unwrap_or("drop a replay here").to_owned();
             return Report { name: "nothing".into(), tick: 0, ticks: None, hash: None, status };
         };
         Report {
@@ -263,7 +268,7 @@ impl App {
             hash: Some(source.hash()),
             // A message replaces the remarks. The message may be an error about another file. A verdict beside it would
             // then seem to refer to that file.
-            status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
+            status: self.message().map_or_else(|| self.status(), str::to_owned),
         }
     }
 
@@ -274,32 +279,36 @@ impl App {
 
     /// Shows a message.
     pub fn tell(&mut self, message: String) {
-        self.message = Some(message);
+        self.message = Some(Remark::plain(message));
     }
 
     /// The message that is shown.
     #[must_use]
     pub fn message(&self) -> Option<&str> {
-        self.message.as_deref()
+        self.message.as_ref().map(|message| message.text.as_str())
     }
 
-    fn remarks(&self) -> Vec<String> {
-        let source = self.source.as_ref().map(|source| source.status());
-        let comparison = self.comparison.as_ref().map(Comparison::status);
+    fn remarks(&self) -> Vec<Remark> {
+        let source = self.source.as_ref().map(|source| Remark::status_of(source.as_ref()));
+        let comparison = self.comparison.as_ref().map(|comparison| Remark::plain(comparison.status()));
         let all = [source, comparison, self.message.clone()];
-        all.into_iter().flatten().filter(|remark| !remark.is_empty()).collect()
+        all.into_iter().flatten().filter(|remark| !remark.text.is_empty()).collect()
+    }
+
+    fn status(&self) -> String {
+        self.remarks().into_iter().map(|remark| remark.text).collect::<Vec<_>>().join(" · ")
     }
 
     /// Shows the error of a result as a message about `name`. Returns the result.
     fn noted<T>(&mut self, name: &str, result: Result<T, OpenError>) -> Result<T, OpenError> {
-        result.inspect_err(|error| self.message = Some(format!("{name}: {error}")))
+        result.inspect_err(|error| self.message = Some(Remark::error(format!("{name}: {error}"))))
     }
 
     fn follow_with_other(&mut self) {
         let (Some(source), Some(comparison)) = (&self.source, &mut self.comparison) else { return };
         let end = comparison.other.ticks().unwrap_or(u64::MAX);
         if let Err(error) = comparison.other.seek(source.tick().min(end)) {
-            self.message = Some(format!("{}: {error}", comparison.other.name()));
+            self.message = Some(Remark::error(format!("{}: {error}", comparison.other.name())));
         }
     }
 
@@ -326,12 +335,12 @@ impl App {
         let Some(source) = &mut self.source else { return };
         let name = format!("{}.replay", source.name());
         match source.save_replay() {
-            None => self.message = Some("nothing to save: this source is not recorded".into()),
+            None => self.message = Some(Remark::plain("nothing to save: this source is not recorded")),
             Some(Ok(bytes)) => {
-                self.message = Some(format!("{name}: {} ticks saved", source.recorded()));
+                self.message = Some(Remark::plain(format!("{name}: {} ticks saved", source.recorded())));
                 self.requests.push(Request::Save { name, bytes });
             }
-            Some(Err(error)) => self.message = Some(error.to_string()),
+            Some(Err(error)) => self.message = Some(Remark::error(error.to_string())),
         }
     }
 }

@@ -53,10 +53,10 @@ pub(super) fn draw(app: &mut App) {
             format!("{} bodies, {} awake · {contacts} contacts · {joints} joints", bodies.0, bodies.1);
         lines.push((theme::INK, format!("{counts} · {faults} faults{}", form.unwrap_or_default())));
     }
-    if source.is_none() {
+    if source.is_none() && remarks.is_empty() {
         lines.push((theme::INK, report.status));
     }
-    lines.extend(remarks.into_iter().map(|remark| (colour_of(&remark), remark)));
+    lines.extend(remarks.into_iter().map(|remark| (remark.colour(), remark.text)));
     lines.push((theme::FAINT, "h: help".into()));
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
@@ -71,16 +71,6 @@ pub(super) fn draw(app: &mut App) {
     if *help {
         let is_live = source.as_mut().is_some_and(|source| source.playground().is_some());
         help::draw(list, *size, is_live, &players);
-    }
-}
-
-/// Colour of a status. A verdict is recognised by its text.
-fn colour_of(status: &str) -> Colour {
-    let bad = ["diverged", "malformed", "incomplete", "claim mismatch", "limit exceeded", "unverifiable"];
-    match status {
-        _ if status.starts_with("match") => theme::GOOD,
-        _ if bad.iter().any(|bad| status.contains(bad)) => theme::BAD,
-        _ => theme::INK,
     }
 }
 

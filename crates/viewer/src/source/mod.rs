@@ -12,6 +12,7 @@ use std::fmt;
 use std::time::Duration;
 
 use lockstep2d::hash::StateHash;
+use lockstep2d::replay::Verdict;
 use lockstep2d::world::World;
 use lockstep2d_render::{Camera, DrawList};
 
@@ -81,6 +82,12 @@ pub trait Source {
     /// Status line, such as the verdict of a replay or the scores of a match; may be empty.
     fn status(&self) -> String {
         String::new()
+    }
+
+    /// Verdict of a replay, which determines the colour of the status line. `None` until the replay has been verified,
+    /// and for other sources.
+    fn verdict(&self) -> Option<&Verdict> {
+        None
     }
 
     /// Interface for user actions, if the source is a live sandbox.

@@ -135,6 +135,10 @@ impl<G: Game + 'static> Source for Replay<G> {
         }
     }
 
+    fn verdict(&self) -> Option<&Verdict> {
+        self.verdict.as_ref()
+    }
+
     fn think(&mut self) -> bool {
         let Some(check) = &mut self.check else { return false };
         let enough = check.work().saturating_add(THINK_WORK);

@@ -1,11 +1,15 @@
 //! Comparing two replays finds and shows their first difference.
 
+use std::cell::Cell;
+
 use lockstep2d::fx;
-use lockstep2d::lockstep::Sandbox;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
 use lockstep2d::math::Vec2;
-use lockstep2d::replay::{Limits, VerifiedReplay};
+use lockstep2d::replay::{Limits, Recording, VerifiedReplay};
 use lockstep2d::world::Command;
-use lockstep2d_viewer::{Event, Key};
+use lockstep2d_viewer::{Event, Key, Viewer};
+use serde::{Deserialize, Serialize};
 
 use super::common::{app_of, frames, press, replay, texts, wait_for};
 
@@ -79,6 +83,59 @@ fn a_snapshot_and_a_replay_are_compared_by_their_worlds() {
     app.compare_with("world.snapshot", later).unwrap();
     frames(&mut app, 500);
     assert!(app.report().status.contains("first difference at tick 91: body "), "{}", app.report());
+}
+
+thread_local! {
+    /// Whether [`Fickle`] refuses the setup 1 on this thread.
+    static REFUSES: Cell<bool> = const { Cell::new(false) };
+}
+
+/// A game that does not always accept its setup.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Fickle(u64);
+
+impl Game for Fickle {
+    type Setup = u64;
+    type Input = ();
+    type Save = Fickle;
+    const RULES: RulesId = RulesId { name: "fickle", version: 1 };
+
+    fn new(setup: &u64) -> Result<Self, SetupError> {
+        match REFUSES.get() && *setup == 1 {
+            true => Err(SetupError { why: "not again".into() }),
+            false => Ok(Fickle(*setup)),
+        }
+    }
+    fn players(&self) -> u32 {
+        1
+    }
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+    fn step(&mut self, _: &[()]) {}
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(self)
+    }
+    fn save(&self) -> Fickle {
+        self.clone()
+    }
+    fn load(&mut self, save: &Fickle) {
+        self.clone_from(save);
+    }
+    fn work(&self, _: &[()]) -> u64 {
+        1
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_opened_again_is_named() {
+    let [first, second] =
+        [1, 2].map(|setup| Recording::<Fickle>::start(&setup, 60).unwrap().finish().unwrap());
+    let mut app = Viewer::<Fickle>::new().app();
+    app.show_file("first.replay", first).unwrap();
+    REFUSES.set(true);
+    let refused = app.compare_with("second.replay", second).unwrap_err();
+    assert_eq!(app.message(), Some(format!("first.replay: {refused}").as_str()));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use lockstep2d::fx;
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{Verdict, verify};
 use lockstep2d::world::World;
-use lockstep2d_viewer::{App, Event, Key, OpenError};
+use lockstep2d_viewer::{App, Colour, Event, Key, OpenError};
 
 use super::common::{app_of, frames, hash_at, press, replay, texts, wait_for, wait_for_status};
 
@@ -51,6 +51,35 @@ fn what_is_damaged_says_what_is_wrong_as_the_verifier_does() {
             "the status should be on the screen"
         );
     }
+}
+
+/// Colour of the line on the screen that starts with a text.
+fn colour_of(app: &mut App, start: &str) -> Colour {
+    let mut lines = app.draw().texts().iter();
+    lines.find(|line| line.text.starts_with(start)).expect(start).colour
+}
+
+#[test]
+fn the_name_of_a_file_does_not_change_the_colour_of_an_error() {
+    let file = replay("pyramid", 60, |_, _| vec![]);
+    let mut app = app_of(file.clone());
+    wait_for_status(&mut app, "match");
+    let good = colour_of(&mut app, "match:");
+    let errors = ["match.replay", "other.replay"].map(|name| {
+        app.show_file(name, b"damaged".to_vec()).unwrap_err();
+        colour_of(&mut app, name)
+    });
+    assert!(errors[0] == errors[1] && errors[0] != good, "{good:?}, {errors:?}");
+    // A comparison has no verdict, whatever its file is named.
+    let comparisons = ["match.replay", "diverged.replay", "other.replay"].map(|name| {
+        app.compare_with(name, file.clone()).unwrap();
+        colour_of(&mut app, name)
+    });
+    assert!(comparisons.iter().all(|colour| *colour == comparisons[2]), "{comparisons:?}");
+    assert!(comparisons[2] != good && comparisons[2] != errors[0]);
+    let mut app = app_of(file[..file.len() - 40].to_vec());
+    wait_for_status(&mut app, "incomplete");
+    assert_eq!(colour_of(&mut app, "incomplete"), errors[0]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::Rng;
 use lockstep2d::replay::{Limits, Verdict, verify};
+use lockstep2d_render::Text;
 use lockstep2d_viewer::{App, Button, Event, Key, LAYER_KEYS, Request};
 
 use super::common::{SIZE, frames, press, texts, wait_for};
@@ -106,6 +107,56 @@ fn a_body_is_dragged_and_thrown() {
     let thrown = place(&mut app);
     assert!(thrown[0] > dragged[0] + 5.0, "{dragged:?} -> {thrown:?}");
     assert!(verify::<Sandbox>(&saved(&mut app), &Limits::default()).is_match());
+}
+
+/// Moves the pointer to the last body with a label, and presses the left button there. Returns the label.
+fn press_on_a_body(app: &mut App) -> Text {
+    let label = app.draw().texts().iter().rfind(|text| text.text.ends_with("v0")).unwrap().clone();
+    app.handle(Event::Moved([label.at[0] - 3.0, label.at[1] + 14.0]));
+    app.handle(Event::Down(Button::Left));
+    label
+}
+
+#[test]
+fn a_click_selects_a_body_and_keeps_the_recording() {
+    let mut app = live("box_stack");
+    press(&mut app, Key::Character('i'));
+    wait_for(&mut app, 100);
+    press(&mut app, Key::PageUp);
+    wait_for(&mut app, 40);
+    press(&mut app, Key::Space);
+    for start in [40, 100] {
+        wait_for(&mut app, start);
+        let label = press_on_a_body(&mut app);
+        frames(&mut app, 3);
+        app.handle(Event::Moved([label.at[0] - 1.0, label.at[1] + 15.0]));
+        frames(&mut app, 3);
+        app.handle(Event::Up(Button::Left));
+        frames(&mut app, 3);
+        assert!(texts(&mut app).contains(&format!("body {}", label.text)));
+        let course = if start == 40 { "recorded" } else { "live" };
+        assert!(app.report().status.starts_with(course), "{}", app.report());
+        press(&mut app, Key::Escape);
+    }
+    let mut untouched = live("box_stack");
+    wait_for(&mut untouched, app.report().tick);
+    assert_eq!(app.report().hash, untouched.report().hash);
+}
+
+#[test]
+fn a_body_that_moves_during_the_press_is_dragged() {
+    let mut app = live("bouncing_ball");
+    press(&mut app, Key::Character('i'));
+    let label = press_on_a_body(&mut app);
+    let height =
+        |app: &mut App| app.draw().texts().iter().find(|text| text.text == label.text).unwrap().at[1];
+    frames(&mut app, 50);
+    let fallen = height(&mut app);
+    assert!(fallen > label.at[1] + 60.0, "{} -> {fallen}", label.at[1]);
+    app.handle(Event::Moved([label.at[0], label.at[1]]));
+    frames(&mut app, 60);
+    let lifted = height(&mut app);
+    assert!(lifted < label.at[1] + 5.0, "{} -> {fallen} -> {lifted}", label.at[1]);
 }
 
 #[test]

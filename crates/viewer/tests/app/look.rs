@@ -2,7 +2,7 @@
 
 use lockstep2d::draw::Layers;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-use lockstep2d_render::DrawList;
+use lockstep2d_render::{CELL_HEIGHT, DrawList};
 use lockstep2d_viewer::{App, Button, Controls, Event, Key, Viewer};
 
 use super::common::{SIZE, app_of, click, frames, layer, press, replay, texts, wait_for};
@@ -74,6 +74,28 @@ fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
 }
 
 #[test]
+fn the_pointer_acts_on_the_world_below_the_fields_of_a_body() {
+    let mut app = app();
+    app.handle(Event::Resized([1000.0, 2000.0]));
+    press(&mut app, layer("ids"));
+    let label = app.draw().texts().iter().find(|text| text.text.ends_with("v0")).unwrap().clone();
+    click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
+    let list = app.draw().clone();
+    let heading = list.texts().iter().find(|text| text.text.starts_with("body ")).unwrap();
+    let rows = list.texts().iter().filter(|text| text.at[0] == heading.at[0]);
+    let bottom = rows.map(|text| text.at[1]).fold(0.0, f32::max) + CELL_HEIGHT;
+    assert!(bottom < 1800.0, "the list should not fill the window: {bottom}");
+    app.handle(Event::Moved([heading.at[0] + 50.0, bottom - 2.0]));
+    app.handle(Event::Wheel(1.0));
+    assert!(*app.draw() == list, "the wheel should scroll the fields");
+    app.handle(Event::Moved([heading.at[0] + 50.0, bottom + 20.0]));
+    app.handle(Event::Wheel(-1.0));
+    assert!(*app.draw() != list, "the wheel should zoom");
+    click(&mut app, [heading.at[0] + 50.0, 1850.0]);
+    assert!(!texts(&mut app).contains(&heading.text), "the click should select nothing");
+}
+
+#[test]
 fn the_camera_follows_a_body_and_lets_go() {
     let mut app = app_of(replay("free_fall", 120, |_, _| vec![]));
     press(&mut app, layer("ids"));
@@ -134,9 +156,11 @@ fn help_is_there_when_asked_for() {
     assert!(texts(&mut app).iter().any(|line| line.contains("play, pause")));
 }
 
-/// A game with the left arrow and the space bar as keys.
+/// A game with these keys: the left arrow, the space bar, the keys of two layers, and two keys for the zoom.
 fn played() -> App {
-    let keys = Controls::new().key(Key::Left, |_: &mut Vec<_>| ()).key(' ', |_| ());
+    let keys = [' ', '2', 'c', '+', '-'].into_iter();
+    let keys =
+        keys.fold(Controls::new(), |keys, key| keys.key(key, |_: &mut Vec<_>| ())).key(Key::Left, |_| ());
     let viewer = ["first", "second", "third"].into_iter().fold(Viewer::<Sandbox>::new(), |viewer, name| {
         viewer.scene(name, "an empty world", |_| SandboxSetup::default())
     });
@@ -146,13 +170,17 @@ fn played() -> App {
 }
 
 #[test]
-fn the_keys_of_a_game_are_not_in_the_help() {
+fn the_help_lists_the_keys_that_a_game_leaves_free() {
     let mut app = played();
     press(&mut app, Key::Character('h'));
     let lines = texts(&mut app);
     let has = |text: &str| lines.iter().any(|line| line == text);
-    assert!(has("p") && has(", .") && has("up, down"), "{lines:?}");
-    assert!(!has("space") && !has("left, right"), "{lines:?}");
+    for free in ["p", ",", "right or .", "up", "=", "1 3 4 5 6 7 8 9 0 v i", "wheel"] {
+        assert!(has(free), "{free:?}: {lines:?}");
+    }
+    for used in ["space or p", "left or ,", "-", "zoom out"] {
+        assert!(!has(used), "{used:?}: {lines:?}");
+    }
     assert!(!has("right drag"), "nobody can draw bodies in it: {lines:?}");
 }
 

@@ -3,6 +3,7 @@
 
 mod decorate;
 
+use lockstep2d::peer::PeerOptions;
 use lockstep2d_shove::{Bot, Pad, Setup, Shove};
 use lockstep2d_viewer::{Controls, Key, Viewer};
 
@@ -12,7 +13,7 @@ pub use decorate::{SEAT_COLOURS, decorate};
 #[must_use]
 pub fn viewer() -> Viewer<Shove> {
     let seats = |seats| move |seed| Setup { seats, seed, ..Setup::default() };
-    let viewer = Viewer::new()
+    Viewer::new()
         .name("shove-viewer")
         .about("Plays shove: two people at one keyboard, or several over a network; and shows its replays")
         .scene("three", "two people and a bot", seats(3))
@@ -26,10 +27,8 @@ pub fn viewer() -> Viewer<Shove> {
             let camera = *canvas.camera();
             decorate(game, canvas.list(), &camera);
         })
-        .status(decorate::headline);
-    #[cfg(not(target_arch = "wasm32"))]
-    let viewer = viewer.online(lockstep2d::peer::PeerOptions::rollback());
-    viewer
+        .status(decorate::headline)
+        .online(PeerOptions::rollback())
 }
 
 /// Creates the bot of a seat.
