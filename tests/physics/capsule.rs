@@ -39,19 +39,21 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s. One of the six
-/// heaps may therefore be restless.
+/// In 10 of 150 heaps (11 with semantics 24), one or two bodies keep rocking against a wall at 0.05 to 0.5 m/s. Four of
+/// the 24 heaps may therefore be restless.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
-    let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {
-        let world = heap(Fx::from_num(millimetres) / 1000);
-        assert!(crate::deepest(&world) < fx!(0.01), "{} m deep", crate::deepest(&world));
-        assert!(world.bodies().skip(1).all(|(_, body)| body.position().y > fx!(0.1)));
-        assert_eq!(world.faults(), 0);
-        crate::speed_max(&world)
-    });
+    let speeds: Vec<_> = (0..24)
+        .map(|millimetres| {
+            let world = heap(Fx::from_num(millimetres) / 1000);
+            assert!(crate::deepest(&world) < fx!(0.01), "{} m deep", crate::deepest(&world));
+            assert!(world.bodies().skip(1).all(|(_, body)| body.position().y > fx!(0.1)));
+            assert_eq!(world.faults(), 0);
+            crate::speed_max(&world)
+        })
+        .collect();
     let restless = speeds.iter().filter(|&&speed| speed > fx!(0.001)).count();
-    assert!(restless <= 1 && speeds.iter().all(|&speed| speed < fx!(0.5)), "{speeds:?} m/s");
+    assert!(restless <= 4 && speeds.iter().all(|&speed| speed < fx!(0.5)), "{speeds:?} m/s");
 }
 
 /// A heap of 40 bodies between two walls, after 20 seconds. `height` raises their initial positions.

@@ -12,7 +12,7 @@ use crate::math::{Fx, Step, Unit, Vec2, widen};
 use crate::world::cache::{ContactCache, ImpactOrder, MotionCache, NarrowPhaseOutput, PendingImpact, Poses};
 use crate::world::state::State;
 
-/// Fraction of a tick within which impacts count as simultaneous.
+/// Fraction of a tick, a 256th, within which impacts count as simultaneous.
 const SIMULTANEOUS: Unit = Unit::lit("0.00390625");
 
 /// Replaces or removes the manifolds of impacts that are later than another impact of a dynamic body.
