@@ -277,6 +277,32 @@ both[1]:update(1740 * INTERVAL / 1000, zero)
 run(1751, 2000)
 assert(both[1].tick > tick + 30, "tick " .. both[1].tick)
 
+-- On Windows, random bytes come from advapi32.dll. This is a stand-in for it: the test does not run on Windows.
+local function random_key(os, load, open)
+    local real = { ffi.os, ffi.load, io.open }
+    ffi.os, ffi.load, io.open = os, load, open
+    local done, made = pcall(Driver.new, { seats = 1, offer = "", game = Game.new(), send = print })
+    ffi.os, ffi.load, io.open = unpack(real)
+    if not done then
+        return made
+    end
+    made:close()
+end
+for _, result in ipairs({ 1, 0 }) do
+    local filled = 0
+    local why = random_key("Windows", function(name)
+        assert(name == "advapi32", name)
+        return { SystemFunction036 = function(bytes, count)
+            ffi.fill(bytes, count, 7)
+            filled = filled + count
+            return result
+        end }
+    end)
+    assert(filled == 28 and (result == 1) == (why == nil), tostring(why))
+end
+local none = random_key("BSD", nil, function() end)
+assert(tostring(none):match("pass 28 of them as the option `random`"), tostring(none))
+
 -- A closed driver frees its saves and its match.
 local objects = tonumber(ls.object_count())
 local one = { start_with = 1 }

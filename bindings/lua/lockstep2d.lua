@@ -11,15 +11,23 @@ local ffi = require("ffi")
 
 local ls = {}
 
+-- Folder of this file. Under LÖVE, it is relative to the folder of the game.
 local folder = debug.getinfo(1, "S").source:match("^@(.*)lockstep2d%.lua$") or ""
-local love_folder = love and love.filesystem.getSource() .. "/"
+local folders = { folder == "" and "./" or folder }
+if love then
+    local game = love.filesystem.getSource() .. "/"
+    folders = { game .. folder, game, folders[1] }
+end
 
 local function read_header()
     local name = "lockstep2d.h"
-    if love and love.filesystem.getInfo(name) then
-        return (assert(love.filesystem.read(name)))
+    -- The folder of the game may be an archive, which only LÖVE can read.
+    for _, path in ipairs(love and { folder .. name, name } or {}) do
+        if love.filesystem.getInfo(path) then
+            return (assert(love.filesystem.read(path)))
+        end
     end
-    local file = assert(io.open(folder .. name))
+    local file = assert(io.open(folders[#folders] .. name))
     local text = file:read("*a")
     file:close()
     return text
@@ -28,7 +36,9 @@ end
 local function load_library()
     local names = { Windows = "lockstep2d_flat.dll", OSX = "liblockstep2d_flat.dylib" }
     local name = names[ffi.os] or "liblockstep2d_flat.so"
-    for _, path in ipairs({ (love_folder or folder) .. name, "./" .. folder .. name }) do
+    for _, each in ipairs(folders) do
+        -- The path has a slash. Otherwise `ffi.load` would look for the file on the search path of the system.
+        local path = each .. name
         local file = io.open(path)
         if file then
             file:close()

@@ -20,21 +20,32 @@ local ADDRESS_MAX, PACKET_MAX = 32, 2048
 -- A time that lies at most this many seconds before an earlier time is not an error.
 local BACK_MAX = 1
 
+--- Random bytes of the system, which nobody can guess; nil if there are none.
+local function random_bytes(count)
+    if ffi.os == "Windows" then
+        -- `RtlGenRandom`, which advapi32.dll exports by this name.
+        ffi.cdef("unsigned char __stdcall SystemFunction036(void *bytes, unsigned long count);")
+        local bytes = ffi.new("uint8_t[?]", count)
+        return ffi.load("advapi32").SystemFunction036(bytes, count) ~= 0 and ffi.string(bytes, count) or nil
+    end
+    local file = io.open("/dev/urandom", "rb")
+    local bytes = file and file:read(count)
+    if file then
+        file:close()
+    end
+    return bytes
+end
+
 --- Opens a match, or joins one through a `contact`, the address of a participant. `settings` are fields of
 --- `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` is a string of 28
---- random bytes; it is required on systems without /dev/urandom. If `settings` lacks `peer`, `key` or `secret`, the
---- value is taken from the random bytes.
+--- random bytes; it is required on systems that have no /dev/urandom and are not Windows. If `settings` lacks `peer`,
+--- `key` or `secret`, the value is taken from the random bytes.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     -- Random bytes for `peer`, `key` and `secret`, which must not be guessable.
-    local random = options.random
+    local random = options.random or random_bytes(28)
     if not random then
-        local file = io.open("/dev/urandom", "rb")
-        if not file then
-            error("this system has no /dev/urandom: pass 28 random bytes as the option `random`", 2)
-        end
-        random = file:read(28)
-        file:close()
+        error("this system has no source of random bytes: pass 28 of them as the option `random`", 2)
     end
     if #random ~= 28 then
         error("`random` has 28 bytes, and not " .. #random, 2)

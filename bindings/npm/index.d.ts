@@ -1019,6 +1019,9 @@ export class Recorder extends Handle {
     checkpoint(hash: string): void;
     /** The bytes finished since the last call, to be appended to a file. */
     take(): Bytes;
+    /** The bytes that `finish` would return now; the recording goes on. After the bytes taken so far, they complete a
+     * replay of the ticks so far. */
+    soFar(hash: string): Bytes;
     /** Ends the replay with the hash of the last state, and returns the remaining bytes. */
     finish(hash: string): Bytes;
 }

@@ -1,7 +1,8 @@
 // Tests the lobby of examples/web in headless Chromium: node bindings/npm/test-lobby.mjs RELAY [SCREENSHOT]
 //
 // Two pages play through the relay (the program `lockstep2d-relay`). One page is reloaded and gets its seat back. Then
-// the pages connect by WebRTC, unless WEBRTC=0. Both pages end with the same hash, and the replay verifies.
+// the pages connect by WebRTC, disconnect and connect again, unless WEBRTC=0. Both pages end with the same hash, and
+// the replay verifies. A page with another version of the rules shows why it cannot join.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { writeFileSync } from "node:fs";
@@ -25,11 +26,34 @@ const enter = async (page) => {
     await page.evaluate("example.enter()");
 };
 
-async function open() {
-    const page = await Browser.open(`${server.address}/examples/web/?code=lobby-1&relay=${encodeURIComponent(url)}`, [760, 640]);
+async function open(code = "lobby-1") {
+    const query = `code=${code}&relay=${encodeURIComponent(url)}`;
+    const page = await Browser.open(`${server.address}/examples/web/?${query}`, [760, 640]);
     pages.push(page);
     await enter(page);
     return page;
+}
+
+// Opens a match with another offer in the room "lobby-2".
+const OTHER = `(async () => {
+    const { Match, MatchDriver, Relay, init } = await import("/bindings/npm/src/index.js");
+    const { Game } = await import("/examples/web/game.js");
+    await init();
+    const room = await Relay.connect(${JSON.stringify(url)}, "lobby-2");
+    const match = new Match({ seats: 4, offer: Uint8Array.of(1) });
+    const driver = new MatchDriver(match, new Game(), (to, packet) => room.send(to, packet));
+    room.onPacket = (from, packet) => driver.receive(performance.now(), from, packet);
+    setInterval(() => driver.update(performance.now(), (seats) => new Uint8Array(seats.length)), 4);
+})()`;
+
+// A page whose offer differs from that of the match shows why it cannot join.
+async function refused() {
+    const host = await open("lobby-3");
+    await host.evaluate(OTHER);
+    const page = await open("lobby-2");
+    const text = "document.getElementById('text').textContent";
+    await page.until(text, (shown) => /refused: the others play another/.test(shown), "the reason");
+    assert.deepEqual([host.complaints, page.complaints], [[], []]);
 }
 
 async function play() {
@@ -43,9 +67,13 @@ async function play() {
     const again = await playing(second, 120);
     assert.deepEqual(again.seats, seats, "the page has its seat again");
     if (process.env.WEBRTC !== "0") {
-        await second.evaluate("example.direct()");
-        for (const page of pages) {
-            await page.until("example.state()", ({ direct }) => direct === 1, "a data channel");
+        const click = (page) => page.evaluate("document.getElementById('direct').click()");
+        await click(first);
+        for (const wanted of [1, 0, 1]) {
+            await click(second);
+            for (const page of pages) {
+                await page.until("example.state()", ({ direct }) => direct === wanted, `${wanted} data channels`);
+            }
         }
     }
     const { tick } = await first.evaluate("example.state()");
@@ -70,6 +98,7 @@ async function play() {
 
 try {
     await play();
+    await refused();
 } finally {
     await Promise.all(pages.map((page) => page.close()));
     server.close();

@@ -25,6 +25,14 @@ for name, value in pairs(ls) do
     end
 end
 
+local refusals = {
+    [ls.REFUSED_OFFER] = "the other player has another version of the game",
+    [ls.REFUSED_FULL] = "too many players are joining; start the game again",
+    [ls.REFUSED_TAKEN] = "the other player has the same number by chance; start the game again",
+}
+-- Why this player cannot join, if so.
+local refusal
+
 local function parse(arguments)
     local parsed = { guess = "6" }
     for i = 1, #arguments, 2 do
@@ -84,6 +92,10 @@ function love.update()
     for _, event in ipairs(driver:update(now, read_keys)) do
         if event.kind == ls.EVENT_DESYNC then
             error("the states differ at tick " .. event.tick)
+        elseif event.kind == ls.EVENT_REFUSED and refusals[event.value] then
+            -- After another reason, the match asks again by itself.
+            refusal = "refused: " .. refusals[event.value]
+            print(refusal)
         end
     end
     local status = driver:status()
@@ -132,7 +144,7 @@ function love.draw()
     graphics.setColor(1, 1, 1)
     local played, _, confirmed = driver:ticks()
     local text = "%s   tick %d, %d ahead of the confirmed inputs"
-    graphics.print(text:format(statuses[driver:status()], played, played - confirmed), 10, 10)
+    graphics.print(refusal or text:format(statuses[driver:status()], played, played - confirmed), 10, 10)
 end
 
 local leaving = false

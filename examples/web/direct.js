@@ -1,6 +1,7 @@
 // WebRTC data channels between the members of a room. The relay carries the signals (offers, answers and candidates),
 // and packets between members without an open channel.
 //
+// Two members are linked only if both want links: a link shows their addresses to each other.
 // A channel is unordered and does not resend lost packets. A member has the same address over a channel as over the
 // relay. A signal is JSON after a prefix with which no packet of a match begins.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
@@ -21,7 +22,7 @@ export class Direct {
     #links = new Map();
     // For each member, the candidates that have arrived before its description.
     #early = new Map();
-    enabled = false;
+    #wanted = false;
     onPacket = () => {};
 
     constructor(relay) {
@@ -41,8 +42,10 @@ export class Direct {
         return [...this.#links.values()].filter(isUsable).length;
     }
 
-    enable() {
-        this.enabled = true;
+    /** Whether this member wants links. If not, its links end, and all packets go through the relay. */
+    enable(wanted) {
+        this.#wanted = wanted;
+        wanted || [...this.#links.values()].forEach(({ address }) => this.#refuse(address));
         this.#connect();
     }
 
@@ -67,7 +70,7 @@ export class Direct {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
         [...this.#early.keys()].filter((name) => !names.has(name)).forEach((name) => this.#early.delete(name));
-        for (const address of this.enabled ? this.#relay.others : []) {
+        for (const address of this.#wanted ? this.#relay.others : []) {
             if (this.#links.has(nameOf(address))) {
                 continue;
             }
@@ -113,7 +116,16 @@ export class Direct {
     }
 
     async #signalled(from, bytes) {
-        const { wish, description, candidate } = JSON.parse(DECODER.decode(bytes));
+        const { wish, refusal, description, candidate } = JSON.parse(DECODER.decode(bytes));
+        if (refusal) {
+            this.#drop(from);
+            return;
+        }
+        if (!this.#wanted) {
+            // Candidates follow an offer, which was refused.
+            candidate || this.#refuse(from);
+            return;
+        }
         if (wish) {
             this.#links.has(nameOf(from)) || (await this.#call(from));
             return;
@@ -121,6 +133,10 @@ export class Direct {
         if (candidate) {
             await this.#reachable(from, candidate);
             return;
+        }
+        if (description?.type === "offer") {
+            // The other member has no link any more if it makes an offer again.
+            this.#drop(from);
         }
         const { connection } = this.#link(from);
         await connection.setRemoteDescription(description);
@@ -142,6 +158,12 @@ export class Direct {
         }
         const early = this.#early.get(nameOf(from)) ?? [];
         this.#early.set(nameOf(from), [...early, candidate].slice(-CANDIDATES_MAX));
+    }
+
+    // Ends the link with a member, or declines its wish or offer. Thereby the member can be asked again later.
+    #refuse(address) {
+        this.#drop(address);
+        this.#signal(address, { refusal: true });
     }
 
     #drop(address) {

@@ -4,6 +4,11 @@ import { Player } from "./player.js";
 
 const element = (id) => document.getElementById(id);
 const KEYS = { KeyA: 1, KeyD: 2, KeyW: 4, ArrowLeft: 1, ArrowRight: 2, ArrowUp: 4 };
+const REFUSALS = {
+    offer: "the others play another version of the game",
+    full: "too many players are joining; reload the page",
+    taken: "another player has the same number by chance; reload the page",
+};
 const pressed = new Set();
 addEventListener("keydown", ({ code }) => pressed.add(code));
 addEventListener("keyup", ({ code }) => pressed.delete(code));
@@ -23,12 +28,14 @@ async function enter(event) {
         element("verdict").textContent = error.message;
         return;
     }
+    // Browsers may restore the checkbox when a page is reloaded.
+    player.direct.enable(element("direct").checked);
     element("match").hidden = false;
     requestAnimationFrame(frame);
 }
 
 function frame() {
-    const { status, tick, final, seats, desyncs, direct } = player.state();
+    const { status, refusal, tick, final, seats, desyncs, direct } = player.state();
     player.guess = element("rollback").checked ? 8 : 0;
     draw(element("canvas"), player.game, 36);
     // A player who has joined late lacks the inputs of the first ticks, and therefore cannot save a replay.
@@ -38,6 +45,7 @@ function frame() {
     const line = player.isOver ? "this player has left" : player.relay.isOpen ? `${others} others in the room, ${direct} of them by WebRTC` : broken;
     element("text").textContent = `${status}, seat ${seats.join(" ")}, tick ${tick}, final ${final}\n${line}\n${player.game.hash()}` +
         (desyncs ? "\nthe states differ" : "") +
+        (refusal ? `\nrefused: ${REFUSALS[refusal]}` : "") +
         (status === "paused" ? "\nwaits for the other player; if the one who opened the match has reloaded the page, leave and open another match" : "");
     player.isOver || requestAnimationFrame(frame);
 }
@@ -60,7 +68,7 @@ element("code").value = parameters.get("code") ?? Math.random().toString(36).sli
 element("lobby").addEventListener("submit", enter);
 element("save").addEventListener("click", save);
 element("leave").addEventListener("click", () => player.leave());
-element("direct").addEventListener("change", () => player.direct.enable());
+element("direct").addEventListener("change", ({ target }) => player.direct.enable(target.checked));
 element("open").addEventListener("change", async ({ target }) => {
     element("verdict").textContent = verify(new Uint8Array(await target.files[0].arrayBuffer()));
 });
@@ -69,7 +77,6 @@ globalThis.example = {
     enter: () => enter(),
     state: () => player?.state(),
     end: (ticks) => player.match.endAt(ticks),
-    direct: () => player.direct.enable(),
     hash: () => player.game.hash(),
     module: () => loaded(),
     replay: () => [...player.recording.finish()],

@@ -17,6 +17,8 @@ function identity(code) {
 
 export class Player {
     desyncs = 0;
+    // Why the others do not let this player join; undefined if they do.
+    refusal;
     isOver = false;
     #input;
 
@@ -51,6 +53,8 @@ export class Player {
         const input = (seats) => Uint8Array.from(seats, () => this.#input());
         const events = this.driver.update(performance.now(), input);
         this.desyncs += events.filter(({ kind }) => kind === "desync").length;
+        // The match asks again by itself only after the reason `notReady`.
+        this.refusal ??= events.find(({ kind, reason }) => kind === "refused" && reason !== "notReady")?.reason;
         this.recording.follow(this.match);
         if (this.match.status === "closed") {
             this.close();
@@ -69,9 +73,10 @@ export class Player {
     }
 
     state() {
-        const { match, driver, direct, desyncs } = this;
+        const { match, driver, direct, desyncs, refusal } = this;
         const inside = match.status !== "connecting";
         const { final } = inside ? match.ticks() : { final: 0 };
-        return { status: match.status, tick: driver.tick, final, seats: inside ? match.seats : [], desyncs, direct: direct.count };
+        const seats = inside ? match.seats : [];
+        return { status: match.status, refusal, tick: driver.tick, final, seats, desyncs, direct: direct.count };
     }
 }

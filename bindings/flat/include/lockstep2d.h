@@ -1520,6 +1520,10 @@ ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
  * 256 results, and their names must differ. The results can be read without playing the replay. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
+/* Returns the bytes that `ls2d_recorder_finish` would return now, and goes on with the recording. After the bytes
+ * taken so far, they complete a replay of the ticks so far, whose last state has the hash `hash`. */
+ls2d_status ls2d_recorder_so_far(uint32_t recorder, const ls2d_hash *hash, uint32_t *bytes);
+
 /* Ends a replay with the hash of the last state, and returns the remaining bytes. */
 ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint32_t *bytes);
 

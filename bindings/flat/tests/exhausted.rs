@@ -42,9 +42,10 @@ fn recording() -> u32 {
 /// A function that takes bytes out of an object.
 type Take = Box<dyn Fn(Out<'_, u32>) -> i32>;
 
-fn takes(recorder: u32, recording: u32) -> [Take; 4] {
+fn takes(recorder: u32, recording: u32) -> [Take; 5] {
     [
         Box::new(move |out| ls2d_recorder_take(recorder, out)),
+        Box::new(move |out| ls2d_recorder_so_far(recorder, In::of(&START), out)),
         Box::new(move |out| ls2d_recorder_finish(recorder, In::of(&START), out)),
         Box::new(move |out| ls2d_recording_take(recording, out)),
         Box::new(move |out| ls2d_recording_finish(recording, out)),

@@ -3,7 +3,9 @@ import { array, byteArray, fail, flag, given, instance, onlyKnown } from "./chec
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
-import { call, copy, fieldAt, give, idAt, library, list, optionsOf, read, scratch, sizeOf, struct, write } from "./library.js";
+import {
+    call, copy, fieldAt, give, idAt, library, list, optionsOf, read, scratch, sizeOf, struct, write, writer,
+} from "./library.js";
 import { World } from "./world.js";
 
 const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged", "hasLanded", "passing"];
@@ -11,15 +13,15 @@ const PASSING_MAX = struct("mover_state").fields.passing[2];
 const PLANE = optionsOf("mover_plane");
 const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
 
-function writeMover(at, options) {
+const writeMover = writer((at, options) => {
     onlyKnown(options, MOVER_OPTIONS, "a mover");
     call("ls2d_mover_init", C.CIRCLE, at);
     const { shape, ...abilities } = options;
     write("mover", at, abilities);
     writeShape(fieldAt("mover", at, "shape"), shape);
-}
+});
 
-function writeState(at, state) {
+const writeState = writer((at, state) => {
     const { position, velocity = [0, 0], ground, isWedged, hasLanded, passing = [] } = onlyKnown(state, STATE_FIELDS, "the state of a character");
     if (position === undefined) {
         fail("the state of a character has a position");
@@ -34,7 +36,7 @@ function writeState(at, state) {
         PLANE.forEach((name) => given(ground[name], `ground.${name}`));
         write("mover_plane", fieldAt("mover_state", at, "ground"), ground);
     }
-}
+});
 
 function readState(at) {
     const { position, velocity, flags, passingCount } = read("mover_state", at);

@@ -2,7 +2,9 @@
 import { array, fail, flag, given, object, onlyKnown, shown } from "./check.js";
 import { Fx, rawOf, vectorOf } from "./fx.js";
 import { C } from "./layout.js";
-import { call, copy as copyOf, fieldAt, fxAt, list, optionsOf, putBytes, putRaw, scratch, sizeOf, statusOf, u32, write } from "./library.js";
+import {
+    call, copy as copyOf, fieldAt, fxAt, list, optionsOf, putBytes, putRaw, scratch, sizeOf, statusOf, u32, write, writer,
+} from "./library.js";
 
 const BODY_KINDS = { fixed: C.FIXED, kinematic: C.KINEMATIC, dynamic: C.DYNAMIC };
 const SWEEPS = { off: C.SWEEP_OFF, fixed: C.SWEEP_FIXED, bullet: C.SWEEP_BULLET, kinematic: C.SWEEP_KINEMATIC };
@@ -111,7 +113,7 @@ function shapeOf(value) {
     return value;
 }
 
-export function writeShape(at, value) {
+export const writeShape = writer((at, value) => {
     const { kind, geometry, options } = shapeOf(value);
     if (kind === undefined) {
         fail("a chain consists of several shapes, and only one shape is possible here");
@@ -133,7 +135,7 @@ export function writeShape(at, value) {
         set |= C.SHAPE_AREA | C.SHAPE_SENSOR | (area.attraction === undefined ? 0 : C.SHAPE_ATTRACTION);
     }
     flags(at, "shape_def", set, cleared & ~set);
-}
+});
 
 /** Replaces each chain of a body by its links, which are encoded structs. */
 export function expand(shapes) {
@@ -169,7 +171,7 @@ export const BODY_FLAGS = {
     lockRotation: C.BODY_LOCK_ROTATION,
 };
 
-export function writeBody(at, options) {
+export const writeBody = writer((at, options) => {
     onlyKnown(options, BODY_OPTIONS, "a body");
     call("ls2d_body_def_init", lookup(BODY_KINDS, options.type ?? "dynamic", "the type of a body"), at);
     const { type: _, shapes: __, mass, continuous, ...plain } = options;
@@ -182,7 +184,7 @@ export function writeBody(at, options) {
     }
     const [set, cleared] = bitsOfFlags(options, BODY_FLAGS);
     flags(at, "body_def", set | (mass === undefined ? 0 : C.BODY_GIVEN_MASS), cleared);
-}
+});
 
 function writeMass(at, options) {
     const { mass, centre, gyration } = onlyKnown(options, ["mass", "centre", "gyration"], "`mass`");
@@ -252,7 +254,7 @@ function checkJoint(options, known) {
 
 /** Writes a joint. With `isPlaced`, a pulley needs no `length`, because the length follows from the poses of the
  * bodies. */
-export function writeJoint(at, options, isPlaced = false) {
+export const writeJoint = writer((at, options, isPlaced = false) => {
     const [kind, ...known] = lookup(JOINTS, object(options, "a joint").type, "the type of a joint");
     checkJoint(options, known);
     if (kind === C.PULLEY && (options.wheels === undefined || (options.length === undefined && !isPlaced))) {
@@ -286,18 +288,18 @@ export function writeJoint(at, options, isPlaced = false) {
     ];
     const set = parts.reduce((bits, [part, bit]) => bits | (part === undefined || part === false ? 0 : bit), 0);
     flags(at, "joint_def", set, options.enabled === false ? C.JOINT_ENABLED : 0);
-}
+});
 
-export function writeConfig(at, options) {
+export const writeConfig = writer((at, options) => {
     const known = [...optionsOf("config", ["flags"]), "sleeping", "continuous"];
     const { sleeping: _, continuous: __, ...plain } = onlyKnown(options, known, "a world");
     write("config", at, plain);
     flags(at, "config", ...bitsOfFlags(options, { sleeping: C.SLEEPING, continuous: C.CONTINUOUS }));
-}
+});
 
 const OVERLAPS = { resist: C.OVERLAP_RESIST, report: C.OVERLAP_REPORT, ignore: C.OVERLAP_IGNORE };
 
-export function writeFilter(at, filter) {
+export const writeFilter = writer((at, filter) => {
     onlyKnown(filter, ["category", "mask", "sensors", "except", "initialOverlap"], "a filter");
     const { category, mask, sensors, except = [], initialOverlap } = filter;
     call("ls2d_query_filter_init", at);
@@ -306,4 +308,4 @@ export function writeFilter(at, filter) {
         flags: flag(sensors, "sensors") ? C.QUERY_SENSORS : 0,
         initialOverlap: optionalLookup(OVERLAPS, initialOverlap, "`initialOverlap`"),
     });
-}
+});

@@ -2,7 +2,7 @@
 import { array, fail, given, long, object, onlyKnown } from "./check.js";
 import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from "./definitions.js";
 import { bitsOf, rawOf, vectorOf } from "./fx.js";
-import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
+import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, write } from "./library.js";
 
 const SETTINGS = ["linearDamping", "angularDamping", "gravityScale", "sleepSpeed", "maySleep", "continuous", "lockX", "lockY",
     "lockRotation"];
@@ -12,7 +12,6 @@ export class Edits extends Handle {
     /** Returns the handle; undefined for a list of commands. */
     spawn(options) {
         const { id: at, body, shapes, count } = writeBodyAndShapes(options);
-        putRaw(at, -1n);
         call("ls2d_spawn", this.handle, body, shapes, count, at);
         return this.added(at);
     }
@@ -28,20 +27,16 @@ export class Edits extends Handle {
         const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
         const ids = rest + placed.length * size;
         placed.forEach((pose, index) => write("pose", rest + index * size, pose));
-        putRaw(ids, -1n);
         call("ls2d_spawn_each", this.handle, body, shapes, count, rest, placed.length, ids, placed.length);
-        return this.#allAdded(ids, placed.length);
-    }
-
-    #allAdded(at, count) {
-        if (count > 0 && this.added(at) === undefined) {
-            return undefined;
-        }
-        return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
+        return this.allAdded(ids, placed.length);
     }
 
     added(at) {
-        return u64(at) === 0xffffffffffffffffn ? undefined : idAt(at);
+        return idAt(at);
+    }
+
+    allAdded(at, count) {
+        return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
     }
 
     despawn(body) {
@@ -51,7 +46,6 @@ export class Edits extends Handle {
     addShape(body, shape) {
         const at = scratch(8 + sizeOf("shape_def"));
         writeShape(at + 8, shape);
-        putRaw(at, -1n);
         call("ls2d_add_shape", this.handle, id(body), at + 8, at);
         return this.added(at);
     }
@@ -69,8 +63,6 @@ export class Edits extends Handle {
     addJoint(options) {
         const { anchor, axis, ...definition } = object(options, "a joint");
         const place = anchor === undefined ? undefined : [...raws(anchor, "anchor"), ...raws(axis ?? [0, 0], "axis")];
-        const at = scratch(48 + sizeOf("joint_def"));
-        writeJoint(at + 48, definition, anchor !== undefined);
         if (options.a === undefined || options.b === undefined) {
             fail("a joint connects two bodies, `a` and `b`");
         }
@@ -79,11 +71,14 @@ export class Edits extends Handle {
             if (frame !== undefined) {
                 fail(`a joint has either \`anchor\` or \`${frame}\`, because \`anchor\` sets \`${frame}\``);
             }
-            this.place(at, place);
         } else if (axis !== undefined) {
             fail("`axis` of a joint needs `anchor`");
         }
-        putRaw(at, -1n);
+        const at = scratch(48 + sizeOf("joint_def"));
+        writeJoint(at + 48, definition, anchor !== undefined);
+        if (place !== undefined) {
+            this.place(at, place);
+        }
         call("ls2d_add_joint", this.handle, at + 48, at);
         return this.added(at);
     }
@@ -99,9 +94,8 @@ export class Edits extends Handle {
         const ids = at + size + 16 * count;
         writeJoint(at, options);
         connected.flat().forEach((body, index) => putRaw(at + size + 8 * index, body));
-        putRaw(ids, -1n);
         call("ls2d_add_joint_each", this.handle, at, at + size, 2 * count, ids, count);
-        return this.#allAdded(ids, count);
+        return this.allAdded(ids, count);
     }
 
     /** Sets the frames in the joint definition at the address `at + 48`. `numbers` are the coordinates of the anchor
@@ -206,8 +200,9 @@ export class Edits extends Handle {
     explode(options) {
         const { centre, impulse, radius, falloff, mask } =
             onlyKnown(options, ["centre", "impulse", "radius", "falloff", "mask"], "an explosion");
+        const numbers = [...raws(centre, "centre"), rawOf(impulse, "impulse")];
         const at = scratch(sizeOf("explosion"));
-        call("ls2d_explosion_init", ...raws(centre, "centre"), rawOf(impulse, "impulse"), at);
+        call("ls2d_explosion_init", ...numbers, at);
         write("explosion", at, { radius, falloff, mask });
         call("ls2d_explode", this.handle, at);
     }
@@ -218,6 +213,15 @@ export class Commands extends Edits {
         const at = scratch(8);
         call("ls2d_commands_new", at);
         super(u32(at));
+    }
+
+    // What a list adds has no handles before a world executes the list.
+    added() {
+        return undefined;
+    }
+
+    allAdded() {
+        return undefined;
     }
 
     place() {

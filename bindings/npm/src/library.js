@@ -86,8 +86,10 @@ function memory() {
 // Number of bytes at the start of the library's buffer that are reserved for `small`; `scratch` returns the bytes after
 // them.
 const SMALL = 64;
-// Number of calls of `scratch`.
-let scratches = 0;
+// Size in bytes of the buffer for the text of an error.
+const TEXT_MAX = 1000;
+// Whether options are being read, whose getters must not use the scratch memory.
+let isReading = false;
 
 function reserve(size) {
     const address = library().ls2d_scratch(size) >>> 0;
@@ -99,9 +101,11 @@ function reserve(size) {
 }
 
 /** Address of at least `size` bytes of scratch memory. The next call of `scratch` returns the same memory, so read
- * results before that call. */
+ * results before that call. The memory moves when it grows. */
 export function scratch(size) {
-    scratches += 1;
+    if (isReading) {
+        fail("a getter of an argument calls the library: pass plain values");
+    }
     return reserve(SMALL + size) + SMALL;
 }
 
@@ -109,20 +113,22 @@ export function scratch(size) {
  * compute while `scratch` is in use. */
 export const small = () => reserve(SMALL);
 
-/** Runs `convert`, which reads arguments. Throws if a getter of an argument has reused the scratch memory. */
-function reading(convert) {
-    const before = scratches;
-    const result = convert();
-    if (scratches !== before) {
-        fail("a getter of an argument calls the library: pass plain values");
+/** Wraps a function that writes options into the scratch memory. While it runs, a getter of the options that would use
+ * the scratch memory throws instead: it would overwrite the memory, or move it away from the function. */
+export const writer = (convert) => (...given) => {
+    const before = isReading;
+    isReading = true;
+    try {
+        return convert(...given);
+    } finally {
+        isReading = before;
     }
-    return result;
-}
+};
 
 export function lastText() {
-    const at = scratch(1024);
-    exports.ls2d_last_error(at + 8, 1000, at);
-    return DECODER.decode(memory().slice(at + 8, at + 8 + Math.min(view.getUint32(at, true), 1000)));
+    const at = reserve(SMALL + 8 + TEXT_MAX) + SMALL;
+    exports.ls2d_last_error(at + 8, TEXT_MAX, at);
+    return DECODER.decode(memory().slice(at + 8, at + 8 + Math.min(view.getUint32(at, true), TEXT_MAX)));
 }
 
 export function failure(status) {
@@ -235,11 +241,7 @@ const FIELDS = Object.fromEntries(
 export const optionsOf = (name, without = []) =>
     Object.keys(STRUCTS[name].fields).filter((field) => !["size", "reserved", ...without].includes(field)).map(camel);
 
-export function write(name, at, values) {
-    reading(() => writeFields(name, at, values));
-}
-
-function writeFields(name, at, values) {
+export const write = writer((name, at, values) => {
     for (const [field, offset, kind, count] of FIELDS[name]) {
         const value = values[field];
         if (value === undefined) {
@@ -258,13 +260,14 @@ function writeFields(name, at, values) {
         } else if (count === undefined) {
             WRITE[kind](at + offset, value, field);
         } else {
-            if (value.length > count) {
-                fail(`${field} has ${value.length} items, at most ${count} are possible`);
+            const items = array(value, field);
+            if (items.length > count) {
+                fail(`${field} has ${items.length} items, at most ${count} are possible`);
             }
-            array(value, field).forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, field));
+            items.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, field));
         }
     }
-}
+});
 
 export function read(name, at) {
     const result = {};

@@ -2,7 +2,10 @@
 import { byteArray, count, fail, instance, integer, long, object, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
 import { Commands } from "./edits.js";
-import { Handle, call, copy, disposable, failure, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
+import {
+    Handle, call, copy, disposable, failure, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf,
+    takeBytes, text, u32, u64, write, writeHash, writer,
+} from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
 import { nextRequest } from "./requests.js";
@@ -37,7 +40,7 @@ function openAt(name, bytes, limits) {
 }
 
 /** Writes limits and returns their address, or 0 for the defaults. */
-function limitsAt(at, limits) {
+const limitsAt = writer((at, limits) => {
     if (limits === undefined) {
         return 0;
     }
@@ -45,7 +48,7 @@ function limitsAt(at, limits) {
     call("ls2d_limits_init", at);
     write("limits", at, limits);
     return at;
-}
+});
 
 export function verifyReplay(bytes, limits) {
     const before = sizeOf("verdict") + sizeOf("limits");
@@ -136,9 +139,17 @@ export class Recorder extends Handle {
         return takeBytes(u32(at));
     }
 
+    soFar(hash) {
+        return this.#ended("ls2d_recorder_so_far", hash);
+    }
+
     finish(hash) {
+        return this.#ended("ls2d_recorder_finish", hash);
+    }
+
+    #ended(name, hash) {
         const at = this.#hash(hash);
-        call("ls2d_recorder_finish", this.handle, at, at + 16);
+        call(name, this.handle, at, at + 16);
         return takeBytes(u32(at + 16));
     }
 }

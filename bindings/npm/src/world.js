@@ -40,9 +40,9 @@ export class World extends Edits {
     }
 
     static #make(options) {
+        const { smallest, ...settings } = object(options, "the options of a world");
         const at = scratch(8 + sizeOf("config"));
         call("ls2d_config_init", at + 8);
-        const { smallest, ...settings } = object(options, "the options of a world");
         writeConfig(at + 8, settings);
         if (smallest !== undefined) {
             call("ls2d_config_for_smallest", at + 8, at + 8, rawOf(smallest, "smallest"));
@@ -171,8 +171,9 @@ export class World extends Edits {
     }
 
     velocityAt(body, point) {
+        const place = raws(point, "point");
         const at = scratch(16);
-        call("ls2d_body_velocity_at", this.handle, id(body), ...raws(point, "point"), at);
+        call("ls2d_body_velocity_at", this.handle, id(body), ...place, at);
         return { x: fxAt(at), y: fxAt(at + 8) };
     }
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
-import { L, initErrors } from "./common.mjs";
+import { L, checkGuards, initErrors } from "./common.mjs";
 
 const world = () => new L.World({ gravity: [0, -10] });
 
@@ -154,6 +154,52 @@ test("getters of a vector may calculate, and other calls in them are errors", ()
     const other = { y: 0, get x() { return w.body(body).position.x; } };
     assert.throws(() => w.spawn({ position: other }), { code: "VALUE", message: /getter/ });
     assert.throws(() => w.overlapBox(other, [9, 9]), { code: "VALUE", message: /getter/ });
+});
+
+test("a getter of an option that calls the library is an error", () => {
+    const w = world();
+    const body = w.spawn({ shapes: [L.circle(1)] });
+    const joint = w.addJoint({ type: "weld", a: body, b: w.spawn({}) });
+    const before = w.hash();
+    const stray = (key, rest = {}) => Object.defineProperty({ ...rest }, key, { enumerable: true, get: () => w.tick });
+    for (const call of [
+        () => w.spawn(stray("userData")), () => w.spawn({ shapes: [L.circle(1, stray("userData"))] }),
+        () => w.spawn(stray("type")), () => w.setBody(body, stray("lockX")),
+        () => w.setMass(body, stray("mass", { gyration: 1 })), () => w.addShape(body, L.circle(1, stray("oneWay"))),
+        () => w.setJoint(joint, stray("collide", { type: "weld" })),
+        () => w.addJoint({ type: "revolute", a: body, b: body, motor: stray("speed", { max: 1 }) }),
+        () => w.setConfig(stray("sleeping")), () => w.castRay([0, 0], [1, 0], stray("sensors")),
+        () => L.encodeMoverState({ position: [0, 0], ground: stray("shape") }),
+    ]) {
+        assert.throws(call, { code: "VALUE", message: /a getter of an argument calls the library/ }, String(call));
+    }
+    assert.equal(w.hash(), before);
+    checkGuards();
+});
+
+test("getters of a point may call the library", () => {
+    const w = world();
+    const body = w.spawn({ angularVelocity: 1, shapes: [L.circle(1)] });
+    const clone = w.clone();
+    const point = { y: 0, get x() { return w.body(body).position.x; } };
+    assert.deepEqual(w.velocityAt(body, point), w.velocityAt(body, [0, 0]));
+    checkGuards();
+    w.explode({ centre: point, impulse: 1, radius: 2 });
+    checkGuards();
+    clone.explode({ centre: [0, 0], impulse: 1, radius: 2 });
+    assert.equal(w.hash(), clone.hash());
+});
+
+test("an empty list adds nothing, and writes nothing behind the scratch memory", () => {
+    const [w, list] = [world(), new L.Commands()];
+    const calls = [(to) => to.spawnEach({ shapes: [L.circle(1)] }, []), (to) => to.addJointEach({ type: "weld" }, [])];
+    for (const call of calls) {
+        for (const [to, added] of [[w, []], [list, undefined]]) {
+            assert.deepEqual(call(to), added, String(call));
+            checkGuards();
+        }
+    }
+    assert.deepEqual([w.counts().bodies, w.counts().joints, list.length], [0, 0, 2]);
 });
 
 test("a key that nothing reads is an error", () => {

@@ -66,10 +66,10 @@ class Connection {
     }
 }
 
-function direct() {
+function direct(name = 1) {
     Connection.all = [];
     globalThis.RTCPeerConnection = Connection;
-    const [own, other] = [Uint8Array.of(1), Uint8Array.of(2)];
+    const [own, other] = [Uint8Array.of(name), Uint8Array.of(2)];
     const relay = { own, others: [other], sent: [], send: (to, packet) => relay.sent.push([...packet]) };
     const made = new Direct(relay);
     const signal = (message) => relay.onPacket(other, new TextEncoder().encode(`lockstep2d signal ${JSON.stringify(message)}`));
@@ -80,7 +80,7 @@ test("a text in a data channel is no packet", () => {
     const { direct: made } = direct();
     const sizes = [];
     made.onPacket = (from, { length }) => sizes.push(length);
-    made.enable();
+    made.enable(true);
     const [{ channel }] = Connection.all;
     channel.onmessage({ data: "2000" });
     channel.onmessage({ data: Uint8Array.of(1, 2, 3).buffer });
@@ -89,7 +89,7 @@ test("a text in a data channel is no packet", () => {
 
 test("packets go through the relay while the connection has no path", async () => {
     const { direct: made, relay, other, settle } = direct();
-    made.enable();
+    made.enable(true);
     await settle();
     const [connection] = Connection.all;
     relay.sent = [];
@@ -103,7 +103,8 @@ test("packets go through the relay while the connection has no path", async () =
 });
 
 test("candidates that arrive before the description are kept", async () => {
-    const { direct: made, signal, settle } = direct();
+    const { direct: made, signal, settle } = direct(3);
+    made.enable(true);
     signal({ candidate: "first" });
     signal({ candidate: "wrong" });
     await settle();
@@ -120,8 +121,8 @@ test("candidates that arrive before the description are kept", async () => {
 });
 
 test("a signal that is no signal ends one link, without an error", async () => {
-    const { relay, signal, settle } = direct();
-    signal({ wish: true });
+    const { direct: made, relay, settle } = direct();
+    made.enable(true);
     await settle();
     const noise = new TextEncoder().encode("lockstep2d signal {");
     relay.onPacket(Uint8Array.of(3), noise);
@@ -130,4 +131,51 @@ test("a signal that is no signal ends one link, without an error", async () => {
     relay.onPacket(Uint8Array.of(2), noise);
     await settle();
     assert.deepEqual(Connection.all.map(({ connectionState }) => connectionState), ["closed"]);
+});
+
+const texts = (relay) => relay.sent.splice(0).map((bytes) => new TextDecoder().decode(Uint8Array.from(bytes)));
+
+test("links end when they are no longer wanted, and can be wanted again", async () => {
+    const { direct: made, relay, other, signal, settle } = direct();
+    made.enable(true);
+    await settle();
+    const [connection] = Connection.all;
+    connection.channel.readyState = "open";
+    connection.connectionState = "connected";
+    assert.equal(made.count, 1);
+    relay.sent = [];
+    made.enable(false);
+    made.send(other, [7]);
+    assert.deepEqual([made.count, connection.connectionState, connection.channel.sent], [0, "closed", []]);
+    assert.deepEqual(texts(relay), ['lockstep2d signal {"refusal":true}', "\x07"]);
+    for (const message of [{ wish: true }, { description: { type: "offer" } }, { candidate: "first" }]) {
+        signal(message);
+    }
+    await settle();
+    assert.deepEqual(texts(relay), Array(2).fill('lockstep2d signal {"refusal":true}'));
+    assert.equal(Connection.all.length, 1);
+    made.enable(true);
+    await settle();
+    assert.equal(Connection.all.length, 2);
+});
+
+test("a refused link can be offered again", async () => {
+    const { direct: made, signal, settle } = direct();
+    made.enable(true);
+    await settle();
+    signal({ refusal: true });
+    await settle();
+    signal({ wish: true });
+    await settle();
+    assert.deepEqual(Connection.all.map(({ connectionState }) => connectionState), ["closed", "new"]);
+});
+
+test("an offer replaces an older link", async () => {
+    const { direct: made, signal, settle } = direct(3);
+    made.enable(true);
+    for (let time = 0; time < 2; time++) {
+        signal({ description: { type: "offer" } });
+        await settle();
+    }
+    assert.deepEqual(Connection.all.map(({ connectionState }) => connectionState), ["closed", "new"]);
 });

@@ -42,6 +42,8 @@ class Socket {
 function clock(t) {
     let now = 1000;
     Socket.all = [];
+    // Node resets the mocks of a test by itself, Deno does not.
+    t.after(() => t.mock.reset());
     t.mock.timers.enable({ apis: ["setTimeout", "setInterval"] });
     t.mock.method(performance, "now", () => now);
     return (seconds) => {

@@ -85,12 +85,15 @@ function record(ticks) {
             recorder.checkpoint(game.hash());
         }
     }
+    assert.equal(new L.Replay(recorder.soFar(game.hash())).ticks, ticks, "the recording goes on");
     recorder.claim("score", -7);
     recorder.claim("größe", 1n << 62n);
     assert.throws(() => recorder.claim("half", 0.5), { code: "VALUE" });
     assert.throws(() => recorder.claim("score", 1), { code: "VALUE" });
     assert.throws(() => recorder.record(Uint8Array.of(1, 1), 2n), { code: "INPUTS" });
-    return recorder.finish(game.hash());
+    const whole = recorder.soFar(game.hash());
+    assert.deepEqual(recorder.finish(game.hash()), whole);
+    return whole;
 }
 
 function play(bytes, cheat = () => {}, score = -7) {

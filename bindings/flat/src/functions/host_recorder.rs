@@ -201,6 +201,20 @@ api! {
         })
     }
 
+    /// Returns the bytes that `ls2d_recorder_finish` would return now, and goes on with the recording. After the bytes
+    /// taken so far, they complete a replay of the ticks so far, whose last state has the hash `hash`.
+    fn ls2d_recorder_so_far(recorder: u32, hash: In<'_, RawHash>, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let hash = hash.get()?.hash();
+        let take = |recorder: &mut HostRecorder| {
+            let copy = recorder.get()?.clone();
+            recorder.game.hash = hash;
+            Ok(copy.finish(&recorder.game)?)
+        };
+        bytes.set(table::add_taken(|| with(recorder, take))?)
+    }
+
     /// Ends a replay with the hash of the last state, and returns the remaining bytes.
     fn ls2d_recorder_finish(recorder: u32, hash: In<'_, RawHash>, bytes: Out<'_, u32>) {
         let mut bytes = bytes;

@@ -45,6 +45,13 @@ fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     (inputs, absent)
 }
 
+/// The ticks of a recorder so far as a replay; `taken` are the bytes taken from the recorder.
+fn so_far(recorder: u32, taken: &[u8], hash: RawHash) -> Vec<u8> {
+    let mut bytes = 0;
+    done(ls2d_recorder_so_far(recorder, In::of(&hash), Out::of(&mut bytes)));
+    [taken, &take(bytes)].concat()
+}
+
 /// Records a game with two claims. Returns the file, and the state before the first tick and after each tick.
 fn record(interval: u32) -> (Vec<u8>, Vec<Sums>) {
     let mut game = Sums::default();
@@ -63,8 +70,15 @@ fn record(interval: u32) -> (Vec<u8>, Vec<Sums>) {
         interval,
         Out::of(&mut recorder),
     ));
-    let mut states = vec![game.clone()];
+    let (mut states, mut taken) = (vec![game.clone()], Vec::new());
     for tick in 0..TICKS {
+        if tick == TICKS / 2 {
+            let part = so_far(recorder, &taken, game.hash());
+            done(ls2d_recorder_take(recorder, Out::of(&mut bytes)));
+            taken = take(bytes);
+            assert_eq!(so_far(recorder, &taken, game.hash()), part);
+            assert_eq!(played(&part, &[]), (MATCH, tick));
+        }
         let (inputs, absent) = inputs_at(tick);
         let mut due = 0;
         done(ls2d_recorder_record(recorder, In::all(&inputs), inputs.len(), absent, Out::of(&mut due)));
@@ -79,9 +93,13 @@ fn record(interval: u32) -> (Vec<u8>, Vec<Sums>) {
     }
     let again = ls2d_recorder_claim(recorder, In::all(b"score"), 5, 9);
     assert_eq!(again, Status::Value as i32, "a second claim of the same name");
+    let whole = so_far(recorder, &taken, game.hash());
     done(ls2d_recorder_finish(recorder, In::of(&game.hash()), Out::of(&mut bytes)));
+    assert_eq!([taken, take(bytes)].concat(), whole);
+    let finished = ls2d_recorder_so_far(recorder, In::of(&game.hash()), Out::of(&mut bytes));
+    assert_eq!(finished, Status::Record as i32);
     done(ls2d_free(recorder));
-    (take(bytes), states)
+    (whole, states)
 }
 
 const CLAIMS: [(&str, i64); 2] = [("score", -17), ("absences", 40)];
@@ -99,6 +117,12 @@ fn verdict(replay: u32, hash: RawHash) -> RawVerdict {
 }
 
 fn play(file: &[u8], claims: &[(&str, i64)]) -> u32 {
+    let (kind, ticks) = played(file, claims);
+    assert_eq!(ticks, TICKS);
+    kind
+}
+
+fn played(file: &[u8], claims: &[(&str, i64)]) -> (u32, u64) {
     let replay = open(file);
     let mut game = Sums::default();
     done(ls2d_replay_check(replay, In::of(&game.hash())));
@@ -117,9 +141,8 @@ fn play(file: &[u8], claims: &[(&str, i64)]) -> u32 {
         done(ls2d_replay_claim(replay, In::all(name.as_bytes()), name.len(), *number));
     }
     let RawVerdict { kind, ticks, .. } = verdict(replay, game.hash());
-    assert_eq!(ticks, TICKS);
     done(ls2d_free(replay));
-    kind
+    (kind, ticks)
 }
 
 #[test]
