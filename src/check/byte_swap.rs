@@ -3,6 +3,9 @@
 //! The test replaces one byte or a run of bytes in a save by the bytes at the same place in a save of another tick. If
 //! the changed state has the same hash, it must also have the same future under the same inputs.
 
+#[cfg(test)]
+mod tests;
+
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -182,18 +185,4 @@ fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
         }
     }
     found
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_and_runs_are_swapped() {
-        let found = byte_swaps(&[1, 2, 3, 4, 5, 6], &[1, 9, 8, 4, 5, 7]);
-        let expected: [(Range<usize>, &[u8]); 4] =
-            [(1..2, &[9]), (2..3, &[8]), (1..3, &[9, 8]), (5..6, &[7])];
-        assert_eq!(found, expected.map(|(range, bytes)| (range, bytes.to_vec())));
-        assert!(byte_swaps(&[1], &[1, 2]).is_empty());
-    }
 }

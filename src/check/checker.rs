@@ -1,3 +1,6 @@
+#[cfg(test)]
+mod tests;
+
 use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -202,23 +205,4 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
 
 pub(super) fn another<G: Game>(setup: &G::Setup, variant: Variant, tick: u64) -> Result<G, Box<Finding>> {
     G::new(setup).map_err(|error| Box::new(Finding::new(variant, Fault::Refused { why: error.why }, tick)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lockstep::{Sandbox, SandboxSetup};
-    use crate::world::Phase;
-
-    #[test]
-    fn phases_are_logged_if_wanted() {
-        let mut game = Sandbox::new(&SandboxSetup::default()).expect("an empty world");
-        for _ in 0..2 {
-            let logged = step(&mut game, &[vec![]], Phases::Compared);
-            let phases: Vec<_> = logged.iter().map(|logged| logged.phase).collect();
-            assert_eq!((phases.len(), phases[1]), (8, Some(Phase::BroadPhase)));
-        }
-        let mut ignoring = Sandbox::new(&SandboxSetup::default()).expect("an empty world");
-        assert!(step(&mut ignoring, &[vec![]], Phases::Ignored).is_empty());
-    }
 }

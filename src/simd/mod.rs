@@ -190,15 +190,6 @@ impl Machine {
             None => Kernel::<1>::run::<Scalar<1>>(kernel),
         }
     }
-
-    /// Runs a kernel of [`WIDTH`] lanes: with vectors, or on arrays of plain integers if the backend has no vectors.
-    #[cfg(test)]
-    pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
-        match self.vectors() {
-            Some(vectors) => vectors.run(kernel),
-            None => kernel.run::<Scalar<WIDTH>>(),
-        }
-    }
 }
 
 /// SIMD backend of the solver and of the narrow phase for boxes. It changes the speed, never the result.

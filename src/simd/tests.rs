@@ -3,6 +3,16 @@
 use super::*;
 use crate::math::Rng;
 
+impl Machine {
+    /// Runs a kernel of [`WIDTH`] lanes: with vectors, or on arrays of plain integers if the backend has no vectors.
+    pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
+        match self.vectors() {
+            Some(vectors) => vectors.run(kernel),
+            None => kernel.run::<Scalar<WIDTH>>(),
+        }
+    }
+}
+
 fn random(rng: &mut Rng) -> i32 {
     match rng.below(8) {
         0 => i32::MIN,

@@ -1,5 +1,8 @@
 //! Bodies in the solver.
 
+#[cfg(test)]
+mod tests;
+
 use core::cell::Cell;
 
 use super::limits::{Faults, SPEED_MAX};
@@ -63,18 +66,4 @@ pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     }
     let (product, extra) = inverse_gyration.times_exact(turn);
     saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + Shift::FRAC_NBITS + 63 - 32))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_velocity_at_either_end_of_its_format_is_clamped() {
-        for (end, limit) in [(Speed::MIN, -SPEED_MAX), (Speed::MAX, SPEED_MAX)] {
-            let (mut body, mut faults) = (SolverBody::default(), 0);
-            body.set_velocity(end, end, end, &mut faults);
-            assert_eq!((body.velocity, body.spin, faults), (Vec2::new(limit, limit), limit, 3));
-        }
-    }
 }

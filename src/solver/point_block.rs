@@ -50,8 +50,6 @@ mod tests;
 use fixed::types::extra::U30;
 
 use super::body::SolverBody;
-#[cfg(test)]
-use super::body_pair::Remainders;
 use super::body_pair::{BodyPair, Change};
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX, shortened};
 use super::row::{Lever, MassFractions, turning};
@@ -172,28 +170,6 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// Solves a rigid block for one iteration. Velocities are measured with the given lever ratios.
-    #[cfg(test)]
-    #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
-    pub(crate) fn solve(
-        &self,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        ratios: (Vec2<Ratio>, Vec2<Ratio>),
-        bias: Vec2<Speed>,
-        softness: &Softness,
-        lambda: &mut Vec2<Speed>,
-        faults: &mut Faults,
-    ) {
-        let vr = self.velocity(a, b, ratios, faults);
-        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults);
-        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults);
-        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
-        let d = next - *lambda;
-        *lambda = next;
-        self.apply(d, &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults });
-    }
-
     /// Solves the block for one iteration, with `|p| <= p_max`.
     #[inline]
     pub(crate) fn solve_within(
@@ -281,16 +257,6 @@ fn product_of_fractions(fractions: MassFractions) -> i128 {
 
 fn units_of(lambda: Vec2<Speed>) -> [i64; 2] {
     [lambda.x, lambda.y].map(|part| part.to_bits().into())
-}
-
-/// `clamp(L + d, -1023, 1023)`.
-#[cfg(test)]
-fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
-    let limit = i64::from(IMPULSE_MAX.to_bits());
-    let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
-    let within = wanted.clamp(-limit, limit);
-    *faults += u64::from(within != wanted);
-    Speed::from_bits(saturate(within))
 }
 
 /// `[K22 -K12; -K12 K11] / det` with one division. All numbers have 30 fraction bits.

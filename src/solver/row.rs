@@ -26,12 +26,8 @@ mod coupled;
 pub(super) use angular::angular_scale;
 
 use super::body::SolverBody;
-#[cfg(test)]
-use super::body_pair::Remainders;
 use super::body_pair::{BodyPair, Change};
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
-#[cfg(test)]
-use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
     Fx, Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate,
@@ -206,24 +202,6 @@ impl Row {
             change(self.n, -times(self.g_a), -times(self.f_a.to_bits().into())),
             change(self.n_b, times(self.g_b), times(self.f_b.to_bits().into())),
         );
-    }
-
-    /// Solves the row for one iteration. Returns the change `d`.
-    #[cfg(test)]
-    #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
-    pub(crate) fn solve(
-        &self,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        bias: Speed,
-        softness: &Softness,
-        bounds: (Speed, Speed),
-        lambda: &mut Speed,
-        faults: &mut Faults,
-    ) -> Speed {
-        let vn = self.velocity(a, b, faults);
-        let bodies = &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults };
-        self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, bodies)
     }
 
     /// Adds an impulse in units of [`Speed`] to `lambda`, within the bounds. Applies and returns the change.

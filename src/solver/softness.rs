@@ -6,9 +6,10 @@
 //! biasRate = omega / a1,  massScale = a2 a3,  impulseScale = a3
 //! ```
 
-use super::limits::units;
 #[cfg(test)]
-use super::limits::{Faults, STEP_MAX};
+mod tests;
+
+use super::limits::units;
 use crate::fx;
 use crate::math::{
     Fx, Rate, Speed, TAU, Unit, Vec2, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
@@ -98,30 +99,5 @@ impl Softness {
         let wide = i64::from(self.mass_scale.to_bits()) * error
             + i64::from(self.impulse_scale.to_bits()) * i64::from(lambda.to_bits());
         round_shift(-wide, 30)
-    }
-
-    /// [`Self::wanted`], clamped to [`STEP_MAX`].
-    #[cfg(test)]
-    pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
-        let wanted = self.wanted(v, bias, lambda);
-        let limit = i64::from(STEP_MAX.to_bits());
-        let within = wanted.clamp(-limit, limit);
-        *faults += u64::from(within != wanted);
-        Speed::from_bits(saturate(within))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn coefficients_match_the_formula() {
-        // omega = 188.4956, h omega = 0.785398.
-        let soft = Softness::spring(fx!(30), fx!(10), 240);
-        let close = |a: Fx, b: Fx| assert!((a - b).abs() < fx!(0.0001), "{a} is not {b}");
-        close(soft.bias_rate.into(), fx!(9.06873));
-        close(soft.mass_scale.into(), fx!(0.942276));
-        close(soft.impulse_scale.into(), fx!(0.057724));
     }
 }

@@ -114,16 +114,6 @@ impl World {
         &self.state.get().config
     }
 
-    /// `Solver::contact_velocity_error` of the last tick.
-    #[cfg(test)]
-    pub(crate) fn contact_velocity_error(&self) -> (i32, i32) {
-        let Config { solver, gravity, tick_rate, .. } = &self.state.get().config;
-        self.scratch
-            .solver
-            .clone()
-            .contact_velocity_error(&crate::solver::Tuning::new(solver, *gravity, *tick_rate))
-    }
-
     /// Number of ticks since the world was created.
     #[must_use]
     pub const fn tick(&self) -> u64 {

@@ -7,6 +7,17 @@ use crate::math::{Fx, Length, Rng, Rot, Vec2, narrow};
 use crate::solver::{JointDef, Revolute, Weld};
 use crate::world::World;
 
+impl World {
+    /// `Solver::contact_velocity_error` of the last tick.
+    pub(crate) fn contact_velocity_error(&self) -> (i32, i32) {
+        let super::Config { solver, gravity, tick_rate, .. } = &self.state.get().config;
+        self.scratch
+            .solver
+            .clone()
+            .contact_velocity_error(&crate::solver::Tuning::new(solver, *gravity, *tick_rate))
+    }
+}
+
 fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).unwrap())
 }

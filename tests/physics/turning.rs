@@ -107,18 +107,20 @@ fn bodies_that_press_on_each_other_keep_their_angular_momentum() {
         (fx!(2), 120, [fx!(0.985), fx!(0.9)], [fx!(0.97), fx!(0.86)]),
         (fx!(-0.5), 60, [fx!(0.995), fx!(0.98)], [fx!(0.96), fx!(0.78)]),
     ] {
-        let kinds: [(&str, &dyn Fn(&mut World, Fx), [Fx; 2]); 2] =
-            [("boxes", &spawn_boxes, boxes), ("discs", &spawn_discs, discs)];
-        for (name, spawn, least) in kinds {
-            let mut world = space(rate);
-            spawn(&mut world, omega);
-            let start = angular_momentum(&world);
-            for (seconds, least) in [1, 9].into_iter().zip(least) {
-                (0..rate * seconds).for_each(|_| world.step());
-                let kept = angular_momentum(&world) / start;
-                assert!((least..=fx!(1.01)).contains(&kept), "{name}, {omega} rad/s, {rate} Hz: {kept}");
-            }
-        }
+        check("boxes", &spawn_boxes, omega, rate, boxes);
+        check("discs", &spawn_discs, omega, rate, discs);
+    }
+}
+
+/// Expects that bodies keep at least the given fractions of their angular momentum after 1 s and 10 s.
+fn check(name: &str, spawn: &dyn Fn(&mut World, Fx), omega: Fx, rate: u32, least: [Fx; 2]) {
+    let mut world = space(rate);
+    spawn(&mut world, omega);
+    let start = angular_momentum(&world);
+    for (seconds, least) in [1, 9].into_iter().zip(least) {
+        (0..rate * seconds).for_each(|_| world.step());
+        let kept = angular_momentum(&world) / start;
+        assert!((least..=fx!(1.01)).contains(&kept), "{name}, {omega} rad/s, {rate} Hz: {kept}");
     }
 }
 
@@ -169,5 +171,25 @@ fn crates_do_not_creep_in_a_hull_that_turns() {
             let creep = (hull.transform().apply_inverse(body.position()) - start).length();
             assert!(creep < fx!(0.1), "{omega} rad/s: {creep} m");
         }
+    }
+}
+
+/// The spins of two frictionless balls do not turn the line of their centres.
+#[test]
+fn balls_that_slide_on_each_other_start_no_orbit() {
+    let mut world = space(60);
+    let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).friction(fx!(0));
+    let balls = [fx!(-0.5), fx!(0.5)].map(|x| {
+        let def = BodyDef::dynamic().position((x, fx!(0))).angular_velocity(fx!(2));
+        world.spawn(&def, &[disc]).expect("valid")
+    });
+    let spring = Spring { hertz: fx!(3), damping_ratio: fx!(0.5), target: fx!(0.2) };
+    let spring = JointDef::new(balls[0], balls[1], Distance { spring: Some(spring), ..Distance::new() });
+    world.add_joint(&JointDef { collide_connected: true, ..spring }).expect("valid");
+    (0..600).for_each(|_| world.step());
+    for id in balls {
+        let ball = world.body(id).expect("there");
+        assert!(ball.velocity().length() < fx!(0.01), "{:?}", ball.velocity());
+        assert!((ball.angular_velocity() - fx!(2)).abs() < fx!(0.01));
     }
 }

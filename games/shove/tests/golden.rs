@@ -9,9 +9,9 @@ use lockstep2d_shove::Shove;
 
 /// Each scene, and its hash after 3000 ticks with seed 1.
 const GOLDENS: [(&str, &str); 3] = [
-    ("duel", "e77611608b76d08a616500a9f00ce63f"),
-    ("match", "c4e54a6409f87b73e7e6305b07665ab7"),
-    ("guests", "865535dd2e0e259cb5c635f6373ce143"),
+    ("duel", "3442cf73863a30c5637442c86341730a"),
+    ("match", "d9ed4a9970e89d8baf1343dc37b98716"),
+    ("guests", "d65a8d548531ffae334e244a93ed817a"),
 ];
 
 fn replay(scene: &str) -> PathBuf {

@@ -1,6 +1,39 @@
 use super::*;
 use crate::fx;
 use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
+use crate::solver::body_pair::Remainders;
+
+impl PointBlock {
+    /// Solves a rigid block for one iteration. Velocities are measured with the given lever ratios.
+    #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
+    pub(crate) fn solve(
+        &self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        ratios: (Vec2<Ratio>, Vec2<Ratio>),
+        bias: Vec2<Speed>,
+        softness: &Softness,
+        lambda: &mut Vec2<Speed>,
+        faults: &mut Faults,
+    ) {
+        let vr = self.velocity(a, b, ratios, faults);
+        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults);
+        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults);
+        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
+        let d = next - *lambda;
+        *lambda = next;
+        self.apply(d, &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults });
+    }
+}
+
+/// `clamp(L + d, -1023, 1023)`.
+fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
+    let limit = i64::from(IMPULSE_MAX.to_bits());
+    let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
+    let within = wanted.clamp(-limit, limit);
+    *faults += u64::from(within != wanted);
+    Speed::from_bits(saturate(within))
+}
 
 /// One update brings the anchors to rest relative to each other: a second update changes `L` by at most 128 units,
 /// 6.1e-5 m/s.

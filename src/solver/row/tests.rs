@@ -2,6 +2,27 @@ use super::super::limits::SPEED_MAX;
 use super::*;
 use crate::fx;
 use crate::math::{Fx, Rng, Rot, mul, narrow};
+use crate::solver::body_pair::Remainders;
+use crate::solver::softness::Softness;
+
+impl Row {
+    /// Solves the row for one iteration. Returns the change `d`.
+    #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
+    pub(crate) fn solve(
+        &self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        bias: Speed,
+        softness: &Softness,
+        bounds: (Speed, Speed),
+        lambda: &mut Speed,
+        faults: &mut Faults,
+    ) -> Speed {
+        let vn = self.velocity(a, b, faults);
+        let bodies = &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults };
+        self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, bodies)
+    }
+}
 
 fn random_speed(rng: &mut Rng, limit: Fx) -> Speed {
     narrow(rng.range(-limit, limit))

@@ -52,7 +52,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) touching: Vec<ActiveContact>,
     /// Possible hit events. A hit event is reported only if the shapes also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
-    /// The contacts whose manifolds are those at the time of an impact.
+    /// The contacts whose manifolds are those at the time of an impact, and those whose shapes miss each other.
     pub(crate) impacts: Vec<PendingImpact>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
@@ -76,7 +76,7 @@ pub(crate) struct PendingHit {
     pub(crate) event: HitEvent,
 }
 
-/// A contact with the manifold at the time of its impact.
+/// A contact with the manifold at the time of its impact, or whose shapes miss each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingImpact {
     /// Index of the manifold.
@@ -87,6 +87,8 @@ pub(crate) struct PendingImpact {
     pub(crate) bodies: [u32; 2],
     /// Fraction of the tick.
     pub(crate) fraction: Unit,
+    /// Whether the shapes miss each other on their straight paths.
+    pub(crate) misses: bool,
     /// The manifold at the start of the tick, and the manifold that the contact then keeps.
     pub(crate) start: (Manifold, KeptManifold),
 }
@@ -96,10 +98,10 @@ pub(crate) struct PendingImpact {
 pub(crate) struct ImpactOrder {
     /// Body slot, fraction of the tick and index of each impact.
     pub(crate) by_body: Vec<(u32, Unit, u32)>,
-    /// Indices of impacts that are later than another one.
+    /// Indices of the impacts that get the manifold at the start of the tick.
     pub(crate) later: Vec<u32>,
-    /// Manifolds of impacts that do not happen.
-    pub(crate) hidden: Vec<u32>,
+    /// Manifolds of the impacts that get none.
+    pub(crate) removed: Vec<u32>,
 }
 
 impl ContactCache {

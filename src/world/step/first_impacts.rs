@@ -2,8 +2,9 @@
 //!
 //! The manifold at an impact is found on the straight path of the tick. A body that hits something earlier leaves this
 //! path. Behind a floor, for example, it would hit the lower end of a wall, with a normal that does not exist above the
-//! floor. A later impact therefore gets the manifold at the start of the tick. If the other shape is behind the plane of
-//! the first impact, which the body does not cross, it gets no manifold.
+//! floor. A later impact therefore gets the manifold at the start of the tick. It gets none if the first impact is with
+//! a body that impulses do not move, and the other shape belongs to a dynamic body behind the plane of that impact.
+//! Shapes that miss each other on their paths get none either, unless one of them leaves its path earlier.
 
 use super::speculative::approach;
 use crate::body::{Arena, Body, BodyId};
@@ -28,40 +29,30 @@ pub(super) fn withdraw_later_ones(
         return;
     }
     list(output, &state.bodies, order);
+    let pending = count(output);
     add_touching(output, poses.motion(), touching, order);
-    if output.impacts.len() < 2 {
-        return;
-    }
     list(output, &state.bodies, order);
-    find_later(output, order);
-    let ImpactOrder { by_body, later, hidden } = order;
-    for impact in &*later {
-        let impact = &output.impacts[*impact as usize];
-        let is_behind = impact.bodies.into_iter().any(|body| {
-            let at = by_body.partition_point(|&(other, ..)| other < body);
-            let first = by_body.get(at).filter(|first| first.0 == body && is_later(impact, first.1));
-            first.is_some_and(|&(.., first)| is_behind(body, impact, &output.impacts[first as usize], output))
-        });
-        if is_behind {
-            hidden.push(impact.manifold);
-        }
-    }
-    for impact in &*later {
-        let impact = &output.impacts[*impact as usize];
+    judge(output, pending, state, touching, order);
+    for &impact in &order.later {
+        let impact = &output.impacts[impact as usize];
         let (manifold, kept) = impact.start;
         output.manifolds[impact.manifold as usize] = manifold;
         contacts[impact.contact as usize].kept = kept;
     }
-    if !hidden.is_empty() {
-        output.remove(hidden);
+    if !order.removed.is_empty() {
+        output.remove(&order.removed);
     }
+}
+
+fn count(output: &NarrowPhaseOutput) -> u32 {
+    u32::try_from(output.impacts.len()).expect("fewer than 2^32 contacts")
 }
 
 /// Sorts the impacts of dynamic bodies by body and time.
 fn list(output: &NarrowPhaseOutput, bodies: &Arena<Body, BodyId>, order: &mut ImpactOrder) {
     let by_body = &mut order.by_body;
     by_body.clear();
-    for (index, impact) in (0u32..).zip(&output.impacts) {
+    for (index, impact) in (0u32..).zip(&output.impacts).filter(|(_, impact)| !impact.misses) {
         let dynamic = impact.bodies.into_iter().filter(|&body| bodies.at(body).is_dynamic());
         by_body.extend(dynamic.map(|body| (body, impact.fraction, index)));
     }
@@ -72,8 +63,16 @@ fn list(output: &NarrowPhaseOutput, bodies: &Arena<Body, BodyId>, order: &mut Im
 /// than the touching distance. They are impacts at the start of the tick.
 fn add_touching(output: &mut NarrowPhaseOutput, motion: &MotionCache, touching: Step, order: &ImpactOrder) {
     let NarrowPhaseOutput { manifolds, touching: contacts, impacts, .. } = output;
-    let is_listed = |body: u32| order.by_body.binary_search_by_key(&body, |&(body, ..)| body).is_ok();
+    let is_listed = |body: u32| {
+        let at = order.by_body.partition_point(|&(other, ..)| other < body);
+        order.by_body.get(at).is_some_and(|&(other, ..)| other == body)
+    };
+    let pending = impacts.len();
     for pair in contacts.iter().filter(|pair| is_listed(pair.bodies.0) || is_listed(pair.bodies.1)) {
+        // The impacts up to `pending` are in the order of their manifolds.
+        if impacts[..pending].binary_search_by_key(&pair.manifold, |impact| impact.manifold).is_ok() {
+            continue;
+        }
         let manifold = manifolds[pair.manifold as usize];
         let motions = [pair.shapes.0, pair.shapes.1].map(|shape| motion.motion(motion.shape(shape)));
         let closing_at = approach(motions[0], motions[1], &manifold);
@@ -86,42 +85,62 @@ fn add_touching(output: &mut NarrowPhaseOutput, motion: &MotionCache, touching: 
                 contact: pair.contact,
                 bodies: [pair.bodies.0, pair.bodies.1],
                 fraction: Unit::ZERO,
+                misses: false,
                 start: (manifold, KeptManifold::NONE),
             });
         }
     }
 }
 
-/// Lists the impacts that are later than the first one of a body.
-fn find_later(output: &NarrowPhaseOutput, order: &mut ImpactOrder) {
-    let ImpactOrder { by_body, later, hidden } = order;
+/// Lists the later ones among the first `pending` impacts, and those whose manifolds are removed.
+fn judge(output: &NarrowPhaseOutput, pending: u32, state: &State, touching: Step, order: &mut ImpactOrder) {
+    let ImpactOrder { by_body, later, removed } = order;
     later.clear();
-    hidden.clear();
-    for of_body in by_body.chunk_by(|a, b| a.0 == b.0) {
-        let (_, first, _) = of_body[0];
-        let impacts = of_body.iter().map(|&(.., impact)| impact);
-        later.extend(impacts.filter(|&impact| is_later(&output.impacts[impact as usize], first)));
+    removed.clear();
+    for (index, impact) in (0..pending).zip(&output.impacts) {
+        // The first impacts of the bodies, if they are earlier than this one.
+        let earlier = impact.bodies.map(|body| {
+            let at = by_body.partition_point(|&(other, ..)| other < body);
+            let first = by_body
+                .get(at)
+                .filter(|&&(other, first, _)| other == body && impact.fraction - first > SIMULTANEOUS);
+            first.map(|&(.., first)| &output.impacts[first as usize])
+        });
+        let is_first = earlier.iter().all(Option::is_none);
+        let is_hidden = [0, 1].into_iter().any(|side| {
+            earlier[side].is_some_and(|first| hides(first, impact, side, output, state, touching))
+        });
+        if is_first && impact.misses || is_hidden {
+            removed.push(impact.manifold);
+        } else if !is_first {
+            later.push(index);
+        }
     }
-    later.sort_unstable();
-    later.dedup();
 }
 
-fn is_later(impact: &PendingImpact, first: Unit) -> bool {
-    impact.fraction - first > SIMULTANEOUS
-}
-
-/// Whether the shape that a body hits in a later impact is behind the plane of the body's first impact.
-fn is_behind(body: u32, later: &PendingImpact, first: &PendingImpact, output: &NarrowPhaseOutput) -> bool {
-    let facing = |impact: &PendingImpact, manifold: Manifold| {
-        if impact.bodies[0] == body { manifold } else { manifold.swapped() }
-    };
-    let plane = facing(first, output.manifolds[first.manifold as usize]);
-    let start = facing(later, later.start.0);
+/// Whether the first impact of the body on one side of a later impact stops the body before it reaches the other one.
+fn hides(
+    first: &PendingImpact,
+    later: &PendingImpact,
+    side: usize,
+    output: &NarrowPhaseOutput,
+    state: &State,
+    touching: Step,
+) -> bool {
+    let body = later.bodies[side];
+    let facing = |side: usize, manifold: Manifold| if side == 0 { manifold } else { manifold.swapped() };
+    let first_side = usize::from(first.bodies[0] != body);
+    let is_dynamic = |body: u32| state.bodies.at(body).is_dynamic();
+    if is_dynamic(first.bodies[1 - first_side]) || !is_dynamic(later.bodies[1 - side]) {
+        return false;
+    }
+    let plane = facing(first_side, output.manifolds[first.manifold as usize]);
+    let start = facing(side, later.start.0);
     let Some(touch) = plane.points().first() else { return false };
     let touch = plane.origin + touch.anchor.widen();
     start.points().iter().all(|point| {
         let half = widen(point.separation >> 1);
         let surface: Vec2<Fx> = start.origin + point.anchor.widen() + start.normal.widen().scale(half);
-        (surface - touch).dot(plane.normal.widen()) > 0
+        (surface - touch).dot(plane.normal.widen()) > widen(touching)
     })
 }

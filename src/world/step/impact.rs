@@ -16,11 +16,11 @@
 //! of the distance, so the shapes cannot touch before it is 0.
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{CachedAxis, Manifold, PosedShape, SatCounters, arm_of, collide_near};
+use crate::collision::{CachedAxis, KeptManifold, Manifold, PosedShape, SatCounters, arm_of, collide_near};
 use crate::math::{
     Angle, Length, Rot, Step, Unit, Vec2, mul, round_shift_wide, saturate, saturate_wide, widen,
 };
-use crate::world::cache::{MotionCache, PredictedMotion, Travel};
+use crate::world::cache::{MotionCache, PendingImpact, PredictedMotion, Travel};
 
 const ROUNDS_MAX: u32 = 4;
 
@@ -30,8 +30,8 @@ const TOLERANCE: Step = Step::lit("0.001");
 /// The impact of two shapes on their paths within a tick.
 #[derive(Debug)]
 pub(super) enum Impact {
-    /// The shapes pass by each other.
-    Miss,
+    /// The shapes pass by each other. They are closest to each other at about this fraction of the tick.
+    Miss { fraction: Unit },
     At {
         /// Fraction of the tick.
         fraction: Unit,
@@ -39,6 +39,21 @@ pub(super) enum Impact {
         /// Displacements of both bodies from the start of the tick to the impact.
         moved: [Vec2<Length>; 2],
     },
+}
+
+impl Impact {
+    /// `start` has the manifold at the start of the tick, and the manifold that the contact then keeps.
+    pub(super) fn pending(
+        &self,
+        manifold: u32,
+        contact: u32,
+        bodies: [u32; 2],
+        start: (Manifold, KeptManifold),
+    ) -> PendingImpact {
+        let (Impact::Miss { fraction } | Impact::At { fraction, .. }) = *self;
+        let misses = matches!(self, Impact::Miss { .. });
+        PendingImpact { manifold, contact, bodies, fraction, misses, start }
+    }
 }
 
 struct MovingShape<'a> {
@@ -95,7 +110,7 @@ impl SpeculativePair<'_> {
             let [a, b] = shapes.each_ref().map(|shape| shape.at(fraction));
             let at_impact = collide_near(&a, &b, self.closing.margin, &mut CachedAxis::default(), counters);
             if at_impact.points().is_empty() {
-                return Some(Impact::Miss);
+                return Some(Impact::Miss { fraction });
             }
             let there = motions.map(|motion| motion.advanced(fraction));
             let next = soonest(there.each_ref(), &at_impact);
@@ -104,7 +119,7 @@ impl SpeculativePair<'_> {
             let later = next.filter(|next| next.separation.saturating_abs() > TOLERANCE);
             match later.and_then(|later| time_of_touch(&later, time)) {
                 Some(later) => time = later,
-                None if is_apart => return Some(Impact::Miss),
+                None if is_apart => return Some(Impact::Miss { fraction }),
                 None => break,
             }
         }

@@ -14,7 +14,7 @@ use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
     AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit,
-    PendingImpact, Poses, PredictedMotion, Scratch,
+    Poses, PredictedMotion, Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -225,19 +225,16 @@ impl NarrowPhase<'_> {
                     continue;
                 }
                 let impact = self.impact(&pair, contact.shapes, manifold, sat);
-                if matches!(impact, Some(Impact::Miss)) {
-                    manifolds.pop();
-                    continue;
-                }
                 let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], manifold.count());
                 recycling.keep(contact, manifold);
-                if let Some(Impact::At { fraction, manifold: at_impact, moved }) = impact {
+                if let Some(impact) = impact {
                     let bodies = [shape_a.body, shape_b.body];
-                    let start = (*manifold, contact.kept);
-                    impacts.push(PendingImpact { manifold: place, contact: index, bodies, fraction, start });
-                    *manifold = at_impact;
-                    recycling.keep_impact(contact, manifold, moved);
-                    moved_by = moved;
+                    impacts.push(impact.pending(place, index, bodies, (*manifold, contact.kept)));
+                    if let Impact::At { manifold: at_impact, moved, .. } = impact {
+                        *manifold = at_impact;
+                        recycling.keep_impact(contact, manifold, moved);
+                        moved_by = moved;
+                    }
                 }
             }
             contacts.push(index);

@@ -37,6 +37,7 @@ fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         manifolds: &[Manifold::new(Vec2::Y)],
         contacts: &[Contact::new((0, 1))],
         list: &list,
+        mean_time: Fx::ZERO,
     };
     let mut input = Input::NONE;
     source.gather(&pair, &[Prospect::default(); 3], &mut WarmStarts::default(), &mut input);
