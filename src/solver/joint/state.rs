@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
-use super::constraint::JointSet;
+use super::constraint::{JointSet, hinge_parts};
 use super::def::{JointDef, JointKind};
 use super::parts::slot;
 use crate::body::Body;
@@ -128,7 +128,9 @@ impl Joint {
                 *impulse = Speed::ZERO;
             }
         }
-        joint.reaction(a, b, tuning)
+        let (force, torque) = joint.reaction(a, b, tuning);
+        // A part of a hinge exerts a torque only. The force is the reaction of the pin.
+        (if hinge_parts(&joint.def.kind).is_some() { Vec2::ZERO } else { force }, torque)
     }
 }
 

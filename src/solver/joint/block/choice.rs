@@ -10,7 +10,7 @@
 //! - the sum of its shares over all hinges, without the largest share, is large ([`SUM_MIN`]).
 //!
 //! Joints of a crowded body are solved in a block if they have rows for a block. Crowded bodies with a common joint
-//! share a block, up to [`ROWS_MAX`] rows.
+//! share a block, up to [`FULL_MAX`] rows, or up to [`ROWS_MAX`] rows if the matrix of the block stays narrow.
 
 use alloc::vec::Vec;
 
@@ -22,9 +22,17 @@ use super::super::options::JointLimit;
 use super::super::state::Joint;
 use crate::math::{Fx, Unit, fx_mul};
 
-/// Largest number of rows of a block. The cost of a full matrix grows with the third power of the rows: a block of this
-/// size costs about as much as 5000 contacts.
-pub(super) const ROWS_MAX: u32 = 96;
+/// Largest number of rows of a block, whatever its matrix. The cost of a full matrix grows with the third power of the
+/// rows: a block of this size costs about as much as 5000 contacts.
+pub(super) const FULL_MAX: u32 = 96;
+
+/// Largest number of rows of a block with a narrow matrix.
+pub(super) const ROWS_MAX: u32 = 2048;
+
+/// Largest width of a block of more than [`FULL_MAX`] rows: how far before a row the rows with a common body begin. In
+/// an envelope (`matrix.rs`), the cost of a row grows with the square of this width. With this width it is 1.3 times
+/// the mean cost of a row in a full matrix of `FULL_MAX` rows, so that the cost of a joint has nearly the same bound.
+const WIDTH_MAX: u32 = 64;
 
 /// A body is crowded if it has a share of at least this at each of two hinges.
 const PAIR_MIN: Unit = Unit::lit("0.6");
@@ -64,10 +72,7 @@ impl Candidate {
             JointKind::Wheel(kind) => {
                 (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
             }
-            JointKind::Distance(kind) => {
-                let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
-                (parts + limits(kind.limit), kind.motor, false)
-            }
+            JointKind::Distance(kind) => (kind.holding_rows(), kind.motor, false),
             JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
             JointKind::Motor(kind) => {
                 let linear = if kind.linear_spring.is_some() { 2 } else { 0 };
@@ -143,6 +148,12 @@ pub(super) struct Choice {
 }
 
 const NOT_CROWDED: u32 = u32::MAX;
+
+/// Whether a block of `rows` rows takes `more` rows, which share a body with the row `first` and with none before it.
+pub(super) fn fits(rows: u32, first: u32, more: u32) -> bool {
+    let rows = rows + more;
+    rows <= FULL_MAX || rows <= ROWS_MAX && rows - first <= WIDTH_MAX
+}
 
 impl Choice {
     /// Chooses the joints and divides them among blocks. Takes time proportional to the number of joints, even if very
@@ -250,23 +261,24 @@ impl Choice {
         self.queue.clear();
         self.queue.push(start);
         self.taken[start as usize] = true;
-        let mut rows = candidates[start as usize].rows;
-        let mut at = 0;
+        let mut total = candidates[start as usize].rows;
+        let (mut at, mut passed) = (0, 0);
         while at < self.queue.len() {
-            for body in candidates[self.queue[at] as usize].bodies {
+            let Candidate { bodies, rows, .. } = candidates[self.queue[at] as usize];
+            for body in bodies {
                 let place = self.places[body as usize];
                 if place != NOT_CROWDED {
-                    rows = self.take_joints_of(place, rows);
+                    total = self.take_joints_of(place, passed, total);
                 }
             }
-            at += 1;
+            (at, passed) = (at + 1, passed + rows);
         }
     }
 
-    /// Adds the joints of a body to the walk, in ascending order, as long as they fit in the block. Takes and returns
-    /// the number of rows in the walk. This number only grows during a walk, so a joint that does not fit is not tried
-    /// again.
-    fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
+    /// Adds the joints of a body to the walk, in ascending order, as long as they fit in the block. `first` is the
+    /// first row of the joint that leads to the body. Takes and returns the number of rows in the walk. A walk visits a
+    /// body once.
+    fn take_joints_of(&mut self, place: u32, first: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];
         if *walk == *walks {
@@ -280,9 +292,9 @@ impl Choice {
         }
         let mut heads = *next;
         loop {
-            let mut first: Option<(u32, u32)> = None;
+            let mut next: Option<(u32, u32)> = None;
             for ((more, head), &end) in (1..).zip(&mut heads).zip(&*ends) {
-                if rows + more > ROWS_MAX {
+                if !fits(rows, first, more) {
                     break;
                 }
                 while *head < end && taken[of_body[*head as usize] as usize] {
@@ -290,10 +302,10 @@ impl Choice {
                 }
                 if *head < end {
                     let joint = of_body[*head as usize];
-                    first = Some(first.map_or((joint, more), |first| first.min((joint, more))));
+                    next = Some(next.map_or((joint, more), |next| next.min((joint, more))));
                 }
             }
-            let Some((joint, more)) = first else { return rows };
+            let Some((joint, more)) = next else { return rows };
             taken[joint as usize] = true;
             queue.push(joint);
             rows += more;

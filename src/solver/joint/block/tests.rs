@@ -1,7 +1,7 @@
 use std::vec;
 use std::vec::Vec;
 
-use super::choice::{Candidate, Choice, ROWS_MAX};
+use super::choice::{Candidate, Choice, FULL_MAX, ROWS_MAX, fits};
 use super::matrix::{Factor, Matrix, ONE};
 use super::mobility::Mobility;
 use super::scaling::{Scaling, root_and_inverse};
@@ -121,19 +121,31 @@ fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
     assert_eq!(chosen(&[weld([0, 1]), weld([0, 2]), weld([0, 3])]), Vec::<u32>::new());
 }
 
+/// The sizes of the blocks of welds, in rows.
+fn block_sizes(candidates: &[Candidate], bodies: usize) -> Vec<usize> {
+    let mut choice = Choice::default();
+    choice.choose(candidates, bodies);
+    let starts = core::iter::once(0).chain(choice.block_ends.iter().copied());
+    let sizes = choice.block_ends.iter().zip(starts).map(|(&end, start)| 3 * (end - start)).collect();
+    choice.order.sort_unstable();
+    assert!(choice.order.iter().map(|&joint| joint as usize).eq(0..candidates.len()), "a joint is lost");
+    sizes
+}
+
+/// A chain has a narrow matrix, and the matrix of a hub is full.
 #[test]
-fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
-    for count in 2..200 {
-        let candidates: Vec<Candidate> = (1..=count).map(|body| weld([body, body + 1])).collect();
-        let mut choice = Choice::default();
-        choice.choose(&candidates, 300);
-        let mut start = 0;
-        for &end in &choice.block_ends {
-            assert!(3 * (end - start) <= ROWS_MAX as usize, "{} joints in a block", end - start);
-            start = end;
-        }
-        choice.order.sort_unstable();
-        assert!(choice.order.iter().copied().eq(0..count), "{count} welds: {:?}", choice.order);
+fn no_block_grows_beyond_its_limits_and_no_joint_is_lost() {
+    for count in [2, 3, 31, 32, 33, 100, 682, 683, 2000] {
+        let chain: Vec<Candidate> = (1..=count).map(|body| weld([body, body + 1])).collect();
+        let sizes = block_sizes(&chain, 3000);
+        assert!(sizes.iter().all(|&rows| rows <= ROWS_MAX as usize), "{count} welds: {sizes:?}");
+        // A longer chain may be cut twice, because a block starts again at its rim.
+        let is_whole = 3 * count <= ROWS_MAX;
+        assert_eq!(sizes.len() == 1, is_whole, "{count} welds: {sizes:?}");
+        let hub: Vec<Candidate> = (2..count + 2).map(|body| weld([1, body])).collect();
+        let sizes = block_sizes(&hub, 3000);
+        assert!(sizes.iter().all(|&rows| rows <= FULL_MAX as usize), "{count} welds: {sizes:?}");
+        assert_eq!(sizes.len(), count.div_ceil(FULL_MAX / 3) as usize, "{count} welds: {sizes:?}");
     }
 }
 
@@ -141,20 +153,26 @@ fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
 fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut taken = vec![false; candidates.len()];
     let walk = |start: u32, taken: &mut Vec<bool>| {
-        let (mut queue, mut at) = (vec![start], 0);
+        let (mut queue, mut at, mut passed) = (vec![start], 0, 0);
+        let mut visited = Vec::new();
         taken[start as usize] = true;
         let mut rows = candidates[start as usize].rows;
         while at < queue.len() {
             for body in candidates[queue[at] as usize].bodies.into_iter().filter(|&body| crowded(body)) {
+                if visited.contains(&body) {
+                    continue;
+                }
+                visited.push(body);
                 for (joint, candidate) in (0..).zip(candidates) {
                     let is_there = candidate.rows > 0 && candidate.bodies.contains(&body);
-                    if is_there && !taken[joint as usize] && rows + candidate.rows <= ROWS_MAX {
+                    if is_there && !taken[joint as usize] && fits(rows, passed, candidate.rows) {
                         taken[joint as usize] = true;
                         rows += candidate.rows;
                         queue.push(joint);
                     }
                 }
             }
+            passed += candidates[queue[at] as usize].rows;
             at += 1;
         }
         queue
