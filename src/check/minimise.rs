@@ -157,13 +157,15 @@ impl<G: Game> Search<'_, G> {
     }
 
     /// Plays a candidate log repeatedly. Returns `None` as soon as it can no longer fail as often as [`Search::need`]
-    /// requires. A candidate that fails often enough is cut after its last failing tick.
+    /// requires. A candidate that fails often enough is cut after its last failing tick. A failure in another variant
+    /// does not count: a candidate with more work may exceed a limit, for example.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
         let (mut failed, mut last): (u32, Option<Box<Finding>>) = (0, None);
         for left in (0..repeats).rev() {
-            if let Err(found) = run_counted(self.setup, &candidate, &self.options, &mut self.spent) {
+            let result = run_counted(self.setup, &candidate, &self.options, &mut self.spent);
+            if let Some(found) = result.err().filter(|found| self.options.variants.contains(&found.variant)) {
                 failed += 1;
                 if last.as_ref().is_none_or(|last| last.played < found.played) {
                     last = Some(found);

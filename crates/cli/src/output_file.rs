@@ -31,6 +31,9 @@ const OWNER_ONLY: u32 = 0o600;
 /// Maximum number of attempts to lock a file that other processes keep renaming or deleting.
 const ATTEMPTS_MAX: u32 = 100;
 
+/// Maximum number of symbolic links from a path to its file, as on Linux.
+const LINKS_MAX: u32 = 40;
+
 /// Whether an existing file is replaced.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Overwrite {
@@ -94,7 +97,7 @@ impl OutputFile {
         }
         check(path, overwrite)?;
         // A symbolic link is preserved. The file that it refers to is replaced.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
+        let target = fs::canonicalize(path).unwrap_or_else(|_| end_of_links(path));
         match fs::metadata(&target) {
             Ok(metadata) if !metadata.is_file() => {
                 let file = File::options().write(true).open(&target).map_err(failed)?;
@@ -168,6 +171,16 @@ impl Drop for OutputFile {
             let _ = fs::remove_file(temporary);
         }
     }
+}
+
+/// The path of a file that does not exist yet, with symbolic links to it resolved.
+fn end_of_links(path: &Path) -> PathBuf {
+    let mut path = path.to_path_buf();
+    for _ in 0..LINKS_MAX {
+        let Ok(next) = fs::read_link(&path) else { break };
+        path = path.parent().map_or_else(|| next.clone(), |parent| parent.join(&next));
+    }
+    path
 }
 
 fn unfinished(path: &Path) -> PathBuf {

@@ -104,7 +104,12 @@ impl World {
                 contact_ended(&mut self.state, contact.shapes);
             }
         }
-        self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
+        // The sleeping contacts are searched before they are borrowed mutably, because a mutable borrow drops their
+        // packed form.
+        if self.state.sleeping_contacts.iter().any(|contact| ends(contact.shapes)) {
+            self.scratch.meter.spend_visit(&self.state.sleeping_contacts);
+            self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
+        }
         if is_listed {
             // Other contacts keep their manifolds for `World::contacts`.
             let contacts = &mut self.state.contacts;

@@ -13,6 +13,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     scratch.pairs.non_colliding.refresh(state);
     let Scratch { awake, union, pairs, shapes, meter, .. } = &mut *scratch;
     unite_joined(state, awake, union);
+    meter.spend_visit(&state.sleeping_contacts);
     // Contacts of bodies that were woken since the last tick are still in the list of sleeping contacts.
     for contact in state.contacts.iter().chain(state.sleeping_contacts.iter()) {
         let (a, b) = state.bodies_of(contact.shapes);

@@ -1,3 +1,4 @@
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::body::{BodyDef, BodyId, Geometry, Handle, ShapeDef};
@@ -139,4 +140,27 @@ fn reused_snapshots_equal_new_ones() {
     world.restore(&before);
     assert_eq!(world.state_hash(), before.state_hash());
     assert_eq!(ring[2], before, "a snapshot does not change with the world");
+}
+
+/// Removing a body beside sleeping contacts leaves their packed form as it is.
+#[test]
+fn snapshots_share_sleeping_contacts_until_these_change() {
+    let mut world = World::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+    let at = |world: &mut World, def: BodyDef, x: Fx| {
+        world.spawn(&def.position((x, fx!(0))), &[ball]).expect("valid")
+    };
+    at(&mut world, BodyDef::fixed(), fx!(0));
+    let asleep = at(&mut world, BodyDef::dynamic(), fx!(0.99));
+    let lone = at(&mut world, BodyDef::dynamic(), fx!(50));
+    world.step();
+    world.sleep(asleep).expect("there");
+    world.step();
+    let before = world.save();
+    world.despawn(lone).expect("there");
+    let after = world.save();
+    assert!(!world.state.sleeping_contacts.is_empty());
+    assert!(Arc::ptr_eq(&before.sleeping_contacts, &after.sleeping_contacts));
+    world.despawn(asleep).expect("there");
+    assert!(!Arc::ptr_eq(&before.sleeping_contacts, &world.save().sleeping_contacts));
 }

@@ -94,6 +94,22 @@ fn input_and_output_may_be_the_same_file() {
 }
 
 #[test]
+fn a_link_to_a_missing_file_creates_the_file() {
+    let folder = Folder::new("outputs-dangling");
+    let link = folder.path("link.replay");
+    std::os::unix::fs::symlink("store.replay", &link).unwrap();
+    for force in [false, true] {
+        let mut arguments = ["record", "box_stack", "--ticks", "2", "-o", &link].map(String::from).to_vec();
+        arguments.extend(force.then(|| "--force".to_string()));
+        let done = tool(&arguments);
+        assert_eq!(done.status.code(), Some(0), "{}", message(&done));
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(names(&folder), ["link.replay", "store.replay"]);
+        fs::remove_file(folder.path("store.replay")).unwrap();
+    }
+}
+
+#[test]
 fn a_full_disk_leaves_the_old_file() {
     let folder = Folder::new("outputs-full");
     let to = folder.path("out");

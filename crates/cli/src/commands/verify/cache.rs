@@ -15,7 +15,7 @@ use crate::console::json_text;
 
 /// Version of the cache, which is part of every key. Increment it if the meaning of an entry changes, or if this
 /// program gives another verdict than an earlier one for the same bytes, rules and semantics.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Maximum number of bytes that are read of an entry. An entry with the maximum number of claims (256) is smaller.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
