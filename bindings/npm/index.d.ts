@@ -208,7 +208,8 @@ export interface ShapeOptions {
     group?: number;
     /** Direction in the body's frame in which other shapes pass through; `degrees(90)` is up. */
     oneWay?: Rotation;
-    /** Whether the shape detects overlaps and does not collide: false by default. */
+    /** Whether the shape detects overlaps and does not collide: false by default. A sensor has mass like any other
+     * shape, unless its density is 0. */
     sensor?: boolean;
     /** Makes the shape a sensor that acts on bodies. Segments and chains cannot be areas. */
     area?: AreaOptions;
@@ -705,7 +706,8 @@ export interface SensorEvent {
 export interface Events {
     /** Bodies that moved or fell asleep, in slot order. */
     moved: { body: BodyId; position: Vec2; angle: Angle; fellAsleep: boolean }[];
-    /** Shapes that began to touch, sorted by shape A, then by shape B. See `contactEvents`. */
+    /** Shapes that began to touch, sorted by shape A, then by shape B. Shapes within 5 mm touch, also if
+     * they do not hit each other. See `contactEvents`. */
     contactBegin: ContactEvent[];
     /** Shapes that ceased to touch, sorted like `contactBegin`. */
     contactEnd: ContactEvent[];

@@ -21,7 +21,7 @@ use figure::Figure;
 use super::error::WorldError;
 use super::geometry::Geometry;
 use super::polygon::Polygon;
-use super::shape::ShapeDef;
+use super::shape::{REACH_MAX, ShapeDef};
 use crate::fx;
 use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 
@@ -93,8 +93,10 @@ impl MassProperties {
     ///
     /// # Errors
     /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, for example 0 because the shapes are lines;
-    /// [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
+    /// [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m; the error of the first shape
+    /// that a dynamic body cannot have.
     pub fn of_shapes(shapes: &[ShapeDef]) -> Result<Self, WorldError> {
+        shapes.iter().try_for_each(|shape| shape.validate(REACH_MAX))?;
         Self::from_parts(shapes.iter().map(Part::of_shape))
     }
 

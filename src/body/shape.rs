@@ -62,7 +62,8 @@ pub struct ShapeDef {
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
     /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors only if [`EventSwitches::detect_sensors`]
-    /// is on. Sensors of fixed bodies do not detect fixed bodies.
+    /// is on. Sensors of fixed bodies do not detect fixed bodies. A sensor has mass like any other shape, unless its
+    /// density is 0.
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,

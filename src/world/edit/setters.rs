@@ -16,7 +16,8 @@ use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlappi
 use crate::world::state::State;
 
 impl World {
-    /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body.
+    /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body, unless the
+    /// settings are the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or a value is out of range.
@@ -25,6 +26,9 @@ impl World {
     #[doc(alias = "bullet")]
     pub fn set_body(&mut self, id: BodyId, settings: &BodySettings) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if *settings == body.settings {
+            return Ok(());
+        }
         settings.validate()?;
         let mass = mass_of(body.kind(), *body.mass_source, settings, self.shape_defs(body))?;
         wake_body(&mut self.state, &mut self.scratch, id.slot());
@@ -208,7 +212,8 @@ impl World {
     }
 
     /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
-    /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. If a change of
+    /// from its shapes, unless the mass was given. Wakes the body and the bodies near it, unless the definition is the
+    /// same. A change of `sensor` ends the contacts of the shape. If a change of
     /// the event switches affects [touching](crate::world::ContactView::touching) pairs, the next tick reports an end
     /// for each pair that has no events any more, and a begin for each pair that now has events and still touches.
     ///
@@ -219,6 +224,9 @@ impl World {
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
+        if *def == *shape.def {
+            return Ok(());
+        }
         let (body, slot) = (shape.body(), shape.body().slot());
         let owner = self.state.bodies.at(slot);
         def.validate(offset_max(owner.kind()))?;

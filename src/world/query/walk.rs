@@ -11,8 +11,8 @@ use super::{InitialOverlap, Probe, QueryFilter};
 use crate::body::{BodyId, BodyKind, Handle, ShapeId};
 use crate::collision::{SKIN, SupportShape, distance};
 use crate::fx;
-use crate::math::{Fx, Rot, Unit, Vec2};
-use crate::world::World;
+use crate::math::{Fx, Rot, Unit, Vec2, fx_div};
+use crate::world::{Config, World};
 
 /// Largest number of casts in one stage of a move: carrying the character, pushing it out, sliding, or snapping to the
 /// ground.
@@ -88,7 +88,8 @@ impl<'a> Walk<'a> {
     }
 
     /// Moves the character by as much as the point of its ground under its feet has moved since the last move. Shapes
-    /// of other bodies deflect this movement. Returns `None` if the body of the ground no longer exists or is disabled.
+    /// of other bodies deflect this movement. Returns `None` if the body of the ground no longer exists, is disabled, or
+    /// has moved farther than the speed limit allows in a tick. It was then placed elsewhere, and leaves the character.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -99,6 +100,10 @@ impl<'a> Walk<'a> {
         } else {
             body.position() + arm_now - ground.point
         };
+        let Config { solver, tick_rate, .. } = &self.world.state.config;
+        if by.length() > fx_div(solver.speed_limit(*tick_rate), Fx::from_num(*tick_rate))? {
+            return None;
+        }
         self.ride(by, ground.body);
         // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
         // velocity of a kinematic body is 0, the displacement counts as the displacement in one tick. This is meant for
