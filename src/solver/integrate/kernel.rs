@@ -81,8 +81,8 @@ fn on_axis(speed_max: Speed) -> i32 {
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
 }
 
-/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a locked
-/// axis or may exceed the speed limit.
+/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body has a locked axis or may
+/// exceed the speed limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],
@@ -121,8 +121,8 @@ fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }
 
-/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a
-/// locked axis or would move too far in the tick.
+/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if a body has a locked axis or would
+/// move too far in the tick.
 #[inline(always)]
 fn displacements<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],

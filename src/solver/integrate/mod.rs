@@ -6,8 +6,8 @@
 //! x' = x + h v'
 //! ```
 //!
-//! Vector instructions integrate several bodies at a time (`kernel`) if all of them are dynamic, have no locked axis
-//! and certainly stay within the limits. Other bodies are integrated one by one.
+//! Vector instructions integrate several bodies at a time (`kernel`) if all of them have no locked axis and certainly
+//! stay within the limits. Other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -23,7 +23,7 @@ use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
 use crate::math::{
     Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, round_shift_wide, saturate, saturate_wide,
 };
-use crate::simd::Quad;
+use crate::simd::{GROUND, Quad};
 pub(crate) use area_effect::AreaEffect;
 use sub_step::SubStep;
 
@@ -36,8 +36,8 @@ pub(super) struct MovingBody {
     /// Changes of the velocity and of the spin in a sub-step by gravity, applied forces and torques, and areas, times
     /// the damping factors.
     step: Quad,
-    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. The third number is negative if the body is
-    /// not dynamic or has a locked axis.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. The third number is negative if the body has a
+    /// locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,
@@ -45,19 +45,19 @@ pub(super) struct MovingBody {
 }
 
 impl MovingBody {
+    /// A body whose velocity does not change: a kinematic body, or the ground in a lane without a body.
+    pub(super) const STEADY: Self = MovingBody {
+        step: Quad([0; 4]),
+        factors: Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), 0, 0]),
+        index: GROUND,
+        dynamic: false,
+        locks: MotionLocks { x: false, y: false, rotation: false },
+    };
+
     pub(super) fn prepare(index: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
         match body.kind() {
             BodyKind::Fixed => None,
-            BodyKind::Kinematic => {
-                let factors = Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), -1, 0]);
-                Some(MovingBody {
-                    step: Quad::default(),
-                    factors,
-                    index,
-                    dynamic: false,
-                    locks: MotionLocks::default(),
-                })
-            }
+            BodyKind::Kinematic => Some(MovingBody { index, ..Self::STEADY }),
             BodyKind::Dynamic if body.has_mass() => {
                 Some(Self::dynamic(index, body.acceleration_step(tuning.rate), &body.settings, tuning))
             }
@@ -96,7 +96,7 @@ impl MovingBody {
         self.index
     }
 
-    /// Whether the body is not dynamic or has a locked axis.
+    /// Whether the body has a locked axis.
     #[inline(always)]
     pub(super) fn has_extras(&self) -> bool {
         let Quad([_, _, extras, _]) = self.factors;
