@@ -1274,8 +1274,10 @@ export class Match extends Handle {
     /** Leaves the match. Call `update` until the status is `closed`, to inform the other peers. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-     * majority has decided on the end, other peers can get seats. One peer can request the end for all, and the request
-     * cannot be withdrawn, so base it on the state of a confirmed tick (`ticks().confirmed`). */
+     * majority has decided on the end, other peers can get seats. One peer with a vote (a player with a seat, or a
+     * dedicated server) can request the end for all, and the request cannot be withdrawn, so base it on the state of a
+     * confirmed tick (`ticks().confirmed`). Without a vote, the request has no effect until this peer gets a seat, and
+     * none if its tick has passed by then. */
     endAt(ticks: number): void;
     /** Tells the other peers that this peer requests a pause, or withdraws its request. The match plays on: during a
      * pause, the program of each peer calls `update` and does not call `advance`. With a driver, use
@@ -1299,8 +1301,15 @@ export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
 export class MatchDriver<Saved = unknown> {
     #private;
     /** The game has to be in the state before the first tick. `send` sends a packet to an address. If it throws, the
-     * packet is lost, and the match goes on. */
-    constructor(match: Match, game: MatchGame<Saved>, send: (to: Bytes, packet: Bytes) => void);
+     * packet is lost, and the match goes on. `contacts` returns the addresses of members of the match, such as
+     * `relay.others`; the first one is the `contact` of the match. The driver asks the next of them if nothing arrives
+     * for two seconds while the status is `connecting`, after the event `refused`, and after `tooFarBehind`. */
+    constructor(
+        match: Match,
+        game: MatchGame<Saved>,
+        send: (to: Bytes, packet: Bytes) => void,
+        options?: { contacts?: (() => Uint8Array[]) | undefined },
+    );
     readonly match: Match;
     /** Number of ticks played, including those with guessed inputs. */
     readonly tick: number;

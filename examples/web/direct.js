@@ -68,7 +68,9 @@ export class Direct {
     // the offer with a `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
-        [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
+        // After a restart of the relay, members return one by one. Links that work do not depend on the relay.
+        const isGone = (link) => !names.has(link.name) && !isUsable(link);
+        [...this.#links.values()].filter(isGone).forEach(({ address }) => this.#drop(address));
         [...this.#early.keys()].filter((name) => !names.has(name)).forEach((name) => this.#early.delete(name));
         for (const address of this.#wanted ? this.#relay.others : []) {
             if (this.#links.has(nameOf(address))) {

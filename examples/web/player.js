@@ -36,7 +36,8 @@ export class Player {
         this.recording = new MatchRecording();
         this.direct = new Direct(relay);
         this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
-        this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
+        const contacts = () => relay.others;
+        this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet), { contacts });
         // Packets also drive the match, because browsers slow down timers in the background.
         this.direct.onPacket = (from, packet) => {
             this.driver.receive(performance.now(), from, packet);
@@ -53,8 +54,9 @@ export class Player {
         const input = (seats) => Uint8Array.from(seats, () => this.#input());
         const events = this.driver.update(performance.now(), input);
         this.desyncs += events.filter(({ kind }) => kind === "desync").length;
-        // The match asks again by itself only after the reason `notReady`.
+        // The driver asks another member, which may let this player join.
         this.refusal ??= events.find(({ kind, reason }) => kind === "refused" && reason !== "notReady")?.reason;
+        this.refusal = this.match.status === "connecting" ? this.refusal : undefined;
         this.recording.follow(this.match);
         if (this.match.status === "closed") {
             this.close();

@@ -10,7 +10,7 @@ use lockstep2d::peer::{
 };
 use lockstep2d::replay::{Limits, verify};
 use lockstep2d::report::DesyncReport;
-use lockstep2d::session::Address;
+use lockstep2d::session::{Address, PeerId};
 
 use crate::bytes::session::repair;
 use crate::forge::mutate;
@@ -176,7 +176,7 @@ impl Match {
         // An attacker that cannot forge checksums sends an unchanged packet only from the port of its original sender.
         let from = if !self.forges && packet == heard { sender } else { from };
         if self.forges {
-            repair(0, &mut packet);
+            repair(0, PeerId(to + 1), &mut packet);
         }
         self.network.port(from).send(&packet, &Network::address(to));
         self.seen.packets += 1;

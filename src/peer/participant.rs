@@ -165,6 +165,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
         if let Some(seat) = self.endpoint.session().and_then(Session::taken_seat) {
             return Err(PeerError::SeatTaken { seat });
         }
+        if self.endpoint.session().is_some_and(Session::is_match_used_up) {
+            return Err(PeerError::Refused { why: "the match has had too many players" });
+        }
         if self.endpoint.wants_state() {
             let state = self.simulation.state_for(self.simulation.committed);
             if let Some((tick, bytes)) = state {

@@ -28,6 +28,9 @@ const WINDOW: u64 = 2048;
 /// Maximum number of senders with a replay window. For a further sender, the window of the sender that has been silent
 /// longest is removed.
 const SENDERS_MAX: usize = 1024;
+/// Maximum number of packets that one call of [`Transport::receive`] rejects, so that forged packets cannot keep a peer
+/// from its other work.
+const REJECTED_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
 ///
@@ -198,12 +201,13 @@ impl<T: Transport> Transport for Sealed<T> {
     }
 
     fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
-        loop {
+        for _ in 0..REJECTED_MAX {
             let (from, bytes) = self.inner.receive()?;
             if let Some(packet) = self.open(&bytes) {
                 return Some((from, packet));
             }
         }
+        None
     }
 }
 

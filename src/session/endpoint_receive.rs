@@ -19,12 +19,12 @@ impl Endpoint {
     /// Processes a received packet.
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
         let now = now.min(TIME_MAX);
-        let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
         // A closed endpoint does not answer. A joining peer can then ask another contact.
         if self.is_closed() {
             return;
         }
-        if is_join_packet(body) {
+        if is_join_packet(bytes) {
+            let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
             match JoinPacket::read(body) {
                 Ok((sender, packet)) if sender != self.me || self.concerns_identity(&packet) => {
                     self.take(now, from, sender, packet);
@@ -129,12 +129,11 @@ impl Endpoint {
     }
 
     fn admit(&mut self, now: u64, from: Address, sender: PeerId, key: Key, nonce: u64, offer: &[u8]) {
-        let reason = if offer != self.offer {
-            Some(RefusalReason::Offer)
-        } else if let Phase::InMatch(session) = &mut self.phase {
-            self.guests.admit(now, session, sender, key, nonce)
-        } else {
-            Some(RefusalReason::NotReady)
+        // Outside of a match, the own offer says nothing: this peer may itself be refused because of it.
+        let reason = match &mut self.phase {
+            Phase::InMatch(_) if offer != self.offer => Some(RefusalReason::Offer),
+            Phase::InMatch(session) => self.guests.admit(now, session, sender, key, nonce),
+            _ => Some(RefusalReason::NotReady),
         };
         match reason {
             Some(reason) => {

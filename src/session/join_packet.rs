@@ -83,13 +83,13 @@ pub(super) enum JoinPacket {
     },
 }
 
-/// Offset of the kind in the body of a join packet. The body of a match packet has its flags at this offset.
-const KIND_AT: usize = 4;
+/// Offset of the kind in a join packet. A match packet has its flags at this offset.
+const KIND_AT: usize = 8;
 /// Lowest kind of a join packet. All values of the flags of a match packet are lower.
 const KIND_FIRST: u8 = 0x80;
 
-pub(super) fn is_join_packet(body: &[u8]) -> bool {
-    body.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
+pub(super) fn is_join_packet(bytes: &[u8]) -> bool {
+    bytes.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
 }
 
 impl JoinPacket {

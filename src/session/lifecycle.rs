@@ -20,6 +20,8 @@ pub(super) struct Lifecycle {
     /// Whether the tie-holder or a quorum votes to kick this peer, or did so when this peer lost its vote.
     kicked: bool,
     left: bool,
+    /// Cut of the view in which this peer got its vote; 0 if it had one from the start.
+    voted_from: Tick,
     /// The peer that holds up the match, as last reported.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
@@ -45,6 +47,7 @@ impl Lifecycle {
             dropped: false,
             kicked: false,
             left: false,
+            voted_from: 0,
             waiting_for: None,
             too_far_behind: false,
             paused: Vec::new(),
@@ -59,11 +62,18 @@ impl Session {
             self.lifecycle.dropped = false;
             if !was {
                 self.hurry();
+                self.lifecycle.voted_from = self.view.cut;
             }
         } else if was {
             self.lifecycle.left = self.wants.leave;
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
+        }
+        for remote in &mut self.peers.list {
+            let (had, has) = (before.voter(remote.id).is_some(), self.view.voter(remote.id).is_some());
+            if had || has {
+                remote.lost_vote_at = (!has).then_some(self.clock.active);
+            }
         }
         // A peer removed with `Removal::Without` may return, so the vote ends when the peer is removed.
         let view = &self.view;
@@ -102,9 +112,15 @@ impl Session {
         let notice =
             Tick::try_from(END_NOTICE / u64::from(self.config.tick_micros.max(1))).unwrap_or(Tick::MAX);
         let near = self.play.played.saturating_add(notice);
-        if let Some(end) = self.end_at.filter(|&end| self.view.begun && near >= end) {
-            self.wants.end.get_or_insert(end);
-        }
+        // A request from a time without a vote does not end the match at once when this peer gets a seat.
+        let votes = self.view.voter(self.me).is_some();
+        let is_ahead = |&end: &Tick| self.view.begun && near >= end && end >= self.lifecycle.voted_from;
+        self.wants.end = self.wants.end.or(self.end_at.filter(is_ahead)).filter(|_| votes);
+    }
+
+    /// Whether this peer requests seats of a match that has no room for further spans.
+    pub(crate) fn is_match_used_up(&self) -> bool {
+        self.wants.seats.is_some_and(|want| !self.view.has_room_for(want.seats))
     }
 
     /// A seat that this peer requests but that a peer with another key plays.
@@ -132,7 +148,7 @@ impl Session {
         let stop = self.stop();
         if self.progress.fin >= stop && !self.lifecycle.left {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
-            let acknowledged = || self.all_voters(|row| row.ack >= stop);
+            let acknowledged = || self.all_voters(|row| row.ack >= stop) && !self.awaits_return(since, stop);
             let own = self.config.has(Fault::LocalEnd);
             return if self.lingered(since, own || acknowledged()) {
                 Status::Closed
@@ -179,6 +195,20 @@ impl Session {
         let hasty = self.config.has(Fault::HastyLeave);
         let waited = |period: u64| hasty || self.clock.active > since.saturating_add(period);
         waited(timing.linger) && known || waited(timing.linger_max)
+    }
+
+    /// Whether a peer without the last inputs may return: it lost its vote shortly before this peer finished at the time
+    /// `since`, did not leave, was not kicked, and no new process has taken its place.
+    fn awaits_return(&self, since: u64, stop: Tick) -> bool {
+        let number = self.view.number;
+        self.peers.list.iter().skip(1).any(|remote| {
+            let (row, key) = (remote.row.as_ref(), remote.key);
+            let lost = remote.lost_vote_at.map(|at| at.saturating_add(self.config.timing.linger_max));
+            lost.is_some_and(|until| since <= until)
+                && !row.is_some_and(|row| row.wants.leave || row.view == number && row.ack >= stop)
+                && !self.view.voters.iter().any(|voter| Some(voter.key) == key)
+                && !self.is_voted(|removal| key.is_some_and(|key| *removal == Removal::Kick(key)))
+        })
     }
 
     fn all_voters(&self, condition: impl Fn(&super::row::Row) -> bool) -> bool {

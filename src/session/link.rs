@@ -67,6 +67,12 @@ impl Link {
                 self.measure(trip);
             }
         }
+        // After an outage, the number of sent packets is unknown, as sequence numbers wrap. The measurement of the loss
+        // begins again.
+        let is_old = self.last_sent.is_some_and(|(_, arrived)| now >= arrived.saturating_add(ROUND_TRIP_MAX));
+        if is_old {
+            (self.last_sequence, self.expected, self.arrived) = (None, 0, 0);
+        }
         let step = self.last_sequence.map_or(1, |last| sequence.wrapping_sub(last));
         self.arrived += 1;
         if (1..1 << 15).contains(&step) {

@@ -58,20 +58,22 @@ pub(super) struct Packet {
     pub(super) foreign: Vec<(PeerId, Row)>,
 }
 
-/// The first four bytes of a packet: a checksum seeded with the tag of the match, so that packets of other matches are
-/// rejected.
-pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
-    let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
+/// Seed of the checksum of a packet to `receiver`. A process that has been started again at the same address has another
+/// incarnation. It rejects packets to its predecessor: their sequence numbers and echoes belong to another series.
+pub(super) fn seed(match_tag: u64, receiver: PeerId) -> u64 {
+    match_tag ^ u64::from(receiver.0)
+}
+
+/// The first four bytes of a packet: a checksum whose seed is [`seed`], or the tag of the match for packets for joining.
+/// Thereby a receiver rejects packets of other matches.
+pub(super) fn checksum(seed: u64, body: &[u8]) -> [u8; 4] {
+    let digest = twox_hash::XxHash3_128::oneshot_with_seed(seed, body).to_le_bytes();
     [digest[0], digest[1], digest[2], digest[3]]
 }
 
-pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
+pub(super) fn open(seed: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     let (sum, body) = bytes.split_first_chunk::<4>().ok_or(Malformed)?;
-    if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum {
-        Ok(body)
-    } else {
-        Err(Malformed)
-    }
+    if bytes.len() <= PACKET_BYTES_MAX && checksum(seed, body) == *sum { Ok(body) } else { Err(Malformed) }
 }
 
 /// Composes a packet. Call its methods in the order in which they are declared. Parts that would not fit in
@@ -192,11 +194,11 @@ impl Composer {
         usize::from(count)
     }
 
-    pub(super) fn finish(mut self, match_tag: u64) -> Vec<u8> {
+    pub(super) fn finish(mut self, match_tag: u64, receiver: PeerId) -> Vec<u8> {
         if let Some(byte) = self.bytes.get_mut(FLAGS_AT) {
             *byte = self.flags;
         }
-        let sum = checksum(match_tag, self.bytes.get(4..).unwrap_or_default());
+        let sum = checksum(seed(match_tag, receiver), self.bytes.get(4..).unwrap_or_default());
         if let Some(place) = self.bytes.first_chunk_mut::<4>() {
             *place = sum;
         }

@@ -47,6 +47,8 @@ pub(super) struct Remote {
     pub(super) attached: Option<u64>,
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
+    /// Time at which the peer lost its vote; `None` while it has one, and if it never had one.
+    pub(super) lost_vote_at: Option<u64>,
     pub(super) resumes: Vec<Resume>,
     /// Span of the first run in the next packet to the peer, because the last packet had no room for this run.
     pub(super) next_span: u16,
@@ -124,6 +126,7 @@ impl Peers {
             contact: now,
             attached: None,
             faulty: false,
+            lost_vote_at: None,
             resumes: Vec::new(),
             next_span: 0,
             next_row: None,

@@ -9,7 +9,7 @@ use super::id::{Key, PeerId, Tick};
 use super::peers::{Remote, within};
 use super::row::{Ballot, Removal, Row, SeatWant};
 use super::state::Session;
-use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_bit};
+use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, bit, bits, has_bit};
 
 #[derive(Clone, Debug)]
 pub(super) struct Proposal {
@@ -132,8 +132,7 @@ impl Session {
     /// left and `joined` other voters have joined.
     fn may_add(&self, want: SeatWant, leaves: u64, joined: usize) -> bool {
         let gone = usize::try_from((leaves | self.replaced()).count_ones()).unwrap_or(0);
-        self.view.voters.len().saturating_sub(gone) + joined < SEATS_MAX
-            && self.view.spans.len() + usize::from(want.seats) + SEATS_MAX <= SPANS_MAX
+        self.view.voters.len().saturating_sub(gone) + joined < SEATS_MAX && self.view.has_room_for(want.seats)
     }
 
     /// Bit for each silent voter whose key another incarnation uses to request seats.
@@ -312,6 +311,10 @@ impl Session {
         let mut joins: Vec<Join> = Vec::new();
         let mut free = self.free_after(leaves);
         for (id, want) in self.seat_wants(self.view.number) {
+            // Of several processes with one key, one gets seats.
+            if joins.iter().any(|join| join.key == want.key) {
+                continue;
+            }
             if joins.len() == JOINS_MAX || !self.may_add(want, leaves, joins.len()) {
                 break;
             }

@@ -23,14 +23,14 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a packet. Returns its sender; `None` if the session is closed, if the packet is malformed or belongs
-    /// to another match, or if its sender is unknown or is this peer itself.
+    /// Processes a packet. Returns its sender; `None` if the session is closed, if the packet is malformed, belongs to
+    /// another match or is for another peer, or if its sender is unknown or is this peer itself.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
             return None;
         }
-        let body = packet::open(self.config.match_tag, bytes).ok()?;
+        let body = packet::open(packet::seed(self.config.match_tag, self.me), bytes).ok()?;
         let packet = Packet::read(body, self.log.size()).ok()?;
         let sender = packet.header.sender;
         let (active, wall) = (self.clock.active, self.clock.now);

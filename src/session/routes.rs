@@ -11,8 +11,11 @@ use super::siphash::Secret;
 
 /// Time between probes of an address in microseconds.
 const PROBE_INTERVAL: u64 = 250_000;
-/// Maximum number of probes of an address that does not answer.
+/// Maximum number of probes of an address that another peer has told and that does not answer.
 const PROBES_MAX: u8 = 40;
+/// Number of probes of an address from which a packet has arrived. The source address of a packet may be forged, so a
+/// packet causes only few probes.
+const PROBES_OF_SOURCE: u8 = 3;
 /// Maximum number of addresses of a peer that are probed at a time.
 const CANDIDATES_MAX: usize = 4;
 /// Time in microseconds after the last packet from a peer's address during which another address does not replace it.
@@ -23,7 +26,8 @@ const ROUTES_MAX: usize = 192;
 struct Candidate {
     address: Address,
     next_at: u64,
-    probes: u8,
+    /// Number of further probes.
+    left: u8,
 }
 
 #[derive(Clone, Debug)]
@@ -82,19 +86,25 @@ impl Routes {
     pub(super) fn heard(&mut self, id: PeerId, address: Address, now: u64) {
         match self.find(id) {
             Some(route) if route.address == Some(address) => route.heard_at = now,
-            _ => self.suggest(id, address),
+            _ => self.add_candidate(id, address, PROBES_OF_SOURCE),
         }
     }
 
-    /// Notes that an address may belong to a peer and should be probed.
+    /// Notes that according to another peer, an address belongs to a peer and should be probed.
     pub(super) fn suggest(&mut self, id: PeerId, address: Address) {
+        self.add_candidate(id, address, PROBES_MAX);
+    }
+
+    fn add_candidate(&mut self, id: PeerId, address: Address, probes: u8) {
         let Some(route) = self.add(id).filter(|route| route.address != Some(address)) else { return };
-        if route.candidates.iter().all(|candidate| candidate.address != address) {
-            if route.candidates.len() == CANDIDATES_MAX {
-                route.candidates.remove(0);
-            }
-            route.candidates.push(Candidate { address, next_at: 0, probes: 0 });
+        if let Some(known) = route.candidates.iter_mut().find(|candidate| candidate.address == address) {
+            known.left = known.left.max(probes);
+            return;
         }
+        if route.candidates.len() == CANDIDATES_MAX {
+            route.candidates.remove(0);
+        }
+        route.candidates.push(Candidate { address, next_at: 0, left: probes });
     }
 
     pub(super) fn probes(&mut self, now: u64) -> Vec<(PeerId, Address)> {
@@ -102,10 +112,10 @@ impl Routes {
         for route in &mut self.list {
             for candidate in route.candidates.iter_mut().filter(|candidate| now >= candidate.next_at) {
                 candidate.next_at = now + PROBE_INTERVAL;
-                candidate.probes += 1;
+                candidate.left = candidate.left.saturating_sub(1);
                 probes.push((route.id, candidate.address));
             }
-            route.candidates.retain(|candidate| candidate.probes < PROBES_MAX);
+            route.candidates.retain(|candidate| candidate.left > 0);
         }
         probes
     }

@@ -248,7 +248,8 @@ impl Session {
     }
 
     /// Requests an end of the match after `ticks` ticks. This peer sends the request two seconds before that tick; from
-    /// then on, further calls have no effect. The request of one peer is enough and cannot be taken back, so make it
+    /// then on, further calls have no effect. Without a vote, the request waits until this peer gets a seat, and has no
+    /// effect if its tick has passed by then. The request of one peer is enough and cannot be taken back, so make it
     /// when the ticks that it depends on are [confirmed](Session::confirmed). If several requests are known when a
     /// majority decides, the largest number counts. After the decision no peer gets a seat, and the end does not
     /// change.

@@ -8,11 +8,13 @@ use super::config::Config;
 use super::event::Event;
 use super::id::{Key, NEVER, PeerId};
 use super::join_packet::{JoinPacket, RefusalReason};
-use super::packet::{Composer, Header, Packet, checksum};
+use super::link::{Link, stamp};
+use super::packet::{Composer, Header, Packet, checksum, seed};
+use super::routes::Routes;
 use super::row::{Ballot, Removal, Row, SeatWant};
 use super::start_state::StartState;
 use super::state::{CHANGES_KEPT, Random, Role, Session};
-use super::view::{Change, Join, View};
+use super::view::{Change, Join, SEATS_MAX, SPANS_MAX, Span, View};
 
 fn change() -> Change {
     let join = Join { id: PeerId(7), key: Key(8), seats: 0b110 };
@@ -52,7 +54,7 @@ fn packet_bytes() -> Vec<u8> {
     composer.changes(4, [&change(), &change()]);
     composer.runs(2, 4, [(0, 500, &[1, 2, 1, 2, 3, 4][..]), (9, 77, &[0; 128])]);
     composer.foreign([(PeerId(21), &row())]);
-    composer.finish(5)
+    composer.finish(5, PeerId(31))
 }
 
 #[test]
@@ -78,7 +80,7 @@ fn a_packet_of_eight_players_is_small() {
     let header = Header { sender: PeerId(11), sequence: 12, sent: 13, echo: Some(14) };
     let mut composer = Composer::new(&header, &own);
     composer.runs(1, 4, [(0, 60_000, &[3; 8][..])]);
-    assert_eq!(composer.finish(5).len(), 45);
+    assert_eq!(composer.finish(5, PeerId(31)).len(), 45);
 }
 
 /// Flipped bits, prefixes and additional bytes cause no panic. The decoder rejects prefixes and additional bytes.
@@ -118,7 +120,7 @@ fn packet(row: &Row, first: u32, changes: &[Change]) -> Vec<u8> {
     let header = Header { sender: PeerId(11), sequence: 1, sent: 1, echo: None };
     let mut composer = Composer::new(&header, &own);
     composer.changes(first, changes);
-    composer.finish(5)
+    composer.finish(5, PeerId(31))
 }
 
 #[test]
@@ -173,7 +175,7 @@ fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
                 let bit = usize::try_from(random.below(8 * bytes.len() as u64 - 32)).unwrap() + 32;
                 bytes[bit / 8] ^= 1 << (bit % 8);
             }
-            let sum = checksum(5, &bytes[4..]);
+            let sum = checksum(seed(5, PeerId(31)), &bytes[4..]);
             bytes[..4].copy_from_slice(&sum);
             session.receive(step * 16_000, &bytes);
             session.update(step * 16_000);
@@ -248,5 +250,71 @@ fn join_packets_survive() {
         let bytes = packet.encode(5, PeerId(6));
         assert!(bytes.len() <= super::packet::PACKET_BYTES_MAX, "{packet:?}");
         assert_eq!(JoinPacket::read(&bytes[4..]), Ok((PeerId(6), packet)));
+    }
+}
+
+/// During an outage of ten minutes, a peer sends more than half as many packets as it has sequence numbers.
+#[test]
+fn a_link_is_measured_again_after_an_outage_of_any_length() {
+    for missed in [300_u32, 37_000, 65_000] {
+        let mut link = Link::default();
+        let mut arrive = |number: u32| {
+            let now = u64::from(number) * 16_384;
+            let [low, high, ..] = number.to_le_bytes();
+            link.arrived(u16::from_le_bytes([low, high]), stamp(now), Some(stamp(now - 4096)), 50, now);
+            link.echo(now + 128)
+        };
+        let first = 1000;
+        (first..first + 200).for_each(|number| _ = arrive(number));
+        let again = first + 200 + missed;
+        for number in again..again + 200 {
+            let sent = u64::from(number) * 16_384;
+            assert_eq!(arrive(number), Some(stamp(sent + 128)), "{missed} missed, packet {number}");
+        }
+        assert_eq!((link.loss_per_mille, link.round_trip), (0, 4096), "{missed} missed");
+    }
+}
+
+/// The sender of a packet may forge its source address. The address of a third party then gets few probes. An address
+/// from the list of another peer gets more, and so does one from which packets continue to arrive.
+#[test]
+fn one_packet_causes_few_probes_of_its_source_address() {
+    let probes = |hear: &dyn Fn(u64) -> bool, suggest: bool| {
+        let mut routes = Routes::default();
+        let address = super::address::Address::new(&[9]).unwrap();
+        if suggest {
+            routes.suggest(PeerId(1), address);
+        }
+        let mut count = 0;
+        for step in 0..1000 {
+            if hear(step) {
+                routes.heard(PeerId(1), address, step * 16_000);
+            }
+            count += routes.probes(step * 16_000).len();
+        }
+        count
+    };
+    assert_eq!(probes(&|step| step == 0, false), 3);
+    assert_eq!(probes(&|step| step == 0 || step == 500, false), 6);
+    assert!(probes(&|_| true, false) > 50);
+    assert_eq!(probes(&|_| false, true), 40);
+}
+
+/// Spans are never removed. After the largest number of spans, no peer gets a seat.
+#[test]
+fn a_peer_knows_that_a_match_has_no_room_for_further_players() {
+    let past = |number: usize| {
+        let tick = u32::try_from(number).unwrap();
+        Span { seat: 1, owner: PeerId(9), key: Key(9), since: 0, from: tick, until: tick }
+    };
+    for (spans, is_used_up) in [(SPANS_MAX - SEATS_MAX - 2, false), (SPANS_MAX - SEATS_MAX - 1, true)] {
+        let mut view = View::opened_by(PeerId(11), Key(1), 1, true);
+        view.spans.extend((0..spans).map(past));
+        let config = Config { input_bytes: 2, ..Config::new(5, 4) };
+        let mut session =
+            Session::new(config, PeerId(31), Key(3), Role::Player { seats: 1 }, view, 9).unwrap();
+        session.receive(0, &packet(&Row::new(0), 0, &[]));
+        session.update(0);
+        assert_eq!(session.is_match_used_up(), is_used_up, "{spans} spans before");
     }
 }

@@ -206,8 +206,8 @@ impl Session {
         let rows = foreign.iter().filter_map(|remote| Some((remote.id, remote.row.as_ref()?)));
         let count = packet.foreign(rows);
         let next_row = foreign.get(count).map(|remote| remote.id);
-        let bytes = packet.finish(self.config.match_tag);
         let id = to.id;
+        let bytes = packet.finish(self.config.match_tag, id);
         if let Some(to) = self.peers.list.get_mut(place) {
             to.link.sent(bytes.len());
             (to.resumes, to.next_span, to.next_row) = (resumes, next_span, next_row);

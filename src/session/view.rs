@@ -201,6 +201,12 @@ impl View {
         own
     }
 
+    /// Whether the list of spans has room for a peer that joins with these seats, and for others that join with the same
+    /// change.
+    pub(super) fn has_room_for(&self, seats: u8) -> bool {
+        self.spans.len() + usize::from(seats) + SEATS_MAX <= SPANS_MAX
+    }
+
     /// The view after a change, or `None` if the change is not valid for this view.
     pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
         let mut next = self.clone();

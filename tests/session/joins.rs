@@ -150,6 +150,40 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
+/// A peer that was refused cannot tell whether another one would be admitted to the match.
+#[test]
+fn a_contact_outside_of_a_match_is_not_ready_whatever_the_offer() {
+    let mut net = Net::new(10 * MS, 0, 100);
+    net.host();
+    let other = Identity { offer: vec![9], ..identity(1) };
+    net.add(Endpoint::join(config(), other, Role::Spectator, address(1)).expect("valid"));
+    net.run(S);
+    let newcomer = net.join(Role::Player { seats: 1 }, 2);
+    net.run(2 * S);
+    let is_not_ready =
+        |event: &JoinEvent| matches!(event, JoinEvent::Refused { reason: RefusalReason::NotReady, .. });
+    let events = &net.nodes[newcomer].events;
+    assert!(!events.is_empty() && events.iter().all(is_not_ready), "{events:?}");
+    net.nodes[newcomer].endpoint.ask(address(1));
+    net.run(5 * S);
+    assert_eq!(net.status(newcomer), Some(Status::Playing));
+}
+
+#[test]
+fn of_two_new_processes_with_one_key_one_gets_seats() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.host();
+    net.run(2 * S);
+    for number in [5, 6] {
+        let twin = Identity { key: key(1), ..identity(number) };
+        net.add(Endpoint::join(config(), twin, Role::Player { seats: 1 }, address(1)).expect("valid"));
+    }
+    net.run(6 * S);
+    let session = |index: usize| net.nodes[index].endpoint.session().expect("valid");
+    assert_eq!(session(0).view().voters.len(), 2, "{:?}", session(0).view());
+    assert_eq!(session(1).seats() | session(2).seats(), 0b10);
+}
+
 /// Six spectators join through one another. Each is known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {

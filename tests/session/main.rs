@@ -17,6 +17,7 @@ mod invariants;
 mod joins;
 mod net;
 mod pace;
+mod same_address;
 mod sim;
 mod stories;
 mod storm;

@@ -14,6 +14,8 @@ use super::sim::{MS, Rng, S, Us, id, key};
 pub(super) struct Node {
     pub(super) endpoint: Endpoint,
     pub(super) address: u8,
+    /// Time of the node's clock at the start of the simulation.
+    pub(super) origin: Us,
     pub(super) on: bool,
     pub(super) tick: Tick,
     pub(super) state: u64,
@@ -85,6 +87,7 @@ impl Net {
         self.nodes.push(Node {
             endpoint,
             address: number,
+            origin: 0,
             on: true,
             tick: 0,
             state: START,
@@ -114,7 +117,7 @@ impl Net {
                 let node = self.nodes.iter_mut().find(|node| node.address == to && node.on);
                 if let Some(node) = node {
                     self.received_from[from as usize] += bytes.len() as u64;
-                    node.endpoint.receive(self.now, address(from), &bytes);
+                    node.endpoint.receive(self.now + node.origin, address(from), &bytes);
                 }
             }
             for index in 0..self.nodes.len() {
@@ -127,9 +130,9 @@ impl Net {
     }
 
     pub(super) fn step(&mut self, index: usize) {
-        let now = self.now;
         let state_bytes = self.state_bytes;
         let node = &mut self.nodes[index];
+        let now = self.now + node.origin;
         node.endpoint.update(now);
         while let Some(event) = node.endpoint.next_event() {
             if let JoinEvent::State { tick, bytes } = &event {
@@ -137,7 +140,7 @@ impl Net {
                 node.saved.clear();
                 node.state = u64::from_le_bytes(bytes[..8].try_into().expect("valid"));
                 assert!(bytes[8..].iter().all(|&byte| byte == 7), "the bytes that were sent");
-                node.joined_at = Some(now);
+                node.joined_at = Some(self.now);
             }
             node.events.push(event);
         }

@@ -1,5 +1,5 @@
 // A driver that plays a game in a match.
-import { callable, fail, flag, given, instance, micros, object } from "./check.js";
+import { callable, fail, flag, given, instance, micros, object, onlyKnown } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { disposable } from "./library.js";
 import { Match } from "./match.js";
@@ -7,6 +7,8 @@ import { Match } from "./match.js";
 // A time that lies at most this many milliseconds before an earlier time is not an error: the timestamp of a frame or
 // an event may be a little less than an earlier result of `performance.now()`.
 const BACK_MAX = 1000;
+// A contact that does not answer for this time in milliseconds, or does not admit this peer, is replaced by the next.
+const CONTACT_PATIENCE = 2000;
 
 export class MatchDriver {
     #match;
@@ -26,11 +28,21 @@ export class MatchDriver {
     // `#pauses`: whether this peer requests a pause. `#pausing`: the other peers that request one.
     #pauses = false;
     #pausing = new Set();
+    // Returns the addresses of possible contacts. The first one is the contact of the constructor of `Match`.
+    #contacts;
+    #turn = 0;
+    // Times of the last request by `#seek`, and of the last packet.
+    #asked = -Infinity;
+    #heard;
+    // Whether the contact refuses this peer, or this peer is too far behind to go on.
+    #isStranded = false;
 
-    constructor(match, game, send) {
+    constructor(match, game, send, options = {}) {
         this.#match = instance(match, Match, "the match");
         this.#game = object(game, "the game");
         this.#send = callable(send, "`send`");
+        const { contacts } = onlyKnown(options, ["contacts"], "a driver");
+        this.#contacts = contacts === undefined ? undefined : callable(contacts, "`contacts`");
         this.#keep(0);
     }
 
@@ -74,6 +86,7 @@ export class MatchDriver {
     receive(now, from, packet) {
         this.#check();
         this.#time(now);
+        this.#heard = now;
         this.#match.receive(now, from, packet);
     }
 
@@ -129,6 +142,7 @@ export class MatchDriver {
                 event.value === 1 ? this.#pausing.add(event.peer) : this.#pausing.delete(event.peer);
             }
             this.#isFinished ||= event.status === "finished";
+            this.#isStranded ||= event.kind === "refused" || event.kind === "tooFarBehind";
             this.#events.push(event);
         }
         this.#fulfil();
@@ -137,7 +151,25 @@ export class MatchDriver {
             this.#offer();
         }
         this.#transmit();
+        this.#seek(now);
         return missing;
+    }
+
+    // Asks the next contact if the last one does not answer or does not admit this peer, or if this peer is so far
+    // behind that it has to join again.
+    #seek(now) {
+        this.#heard ??= now;
+        const isSilent = this.#match.status === "connecting" && now - Math.max(this.#heard, this.#asked) >= CONTACT_PATIENCE;
+        if (!(isSilent || (this.#isStranded && now - this.#asked >= CONTACT_PATIENCE))) {
+            return;
+        }
+        const others = this.#contacts?.() ?? [];
+        if (others.length > 0) {
+            this.#turn++;
+            this.#asked = now;
+            this.#isStranded = false;
+            this.#match.ask(others[this.#turn % others.length]);
+        }
     }
 
     // Plays the ticks that are due. Returns errors of `readInputs` and of wrong inputs instead of throwing them: no
@@ -196,6 +228,7 @@ export class MatchDriver {
     #resume(tick, state) {
         this.#game.decode(state);
         this.#isFinished = false;
+        this.#isStranded = false;
         this.#tick = tick;
         this.#forget(() => true);
         this.#keep(tick);

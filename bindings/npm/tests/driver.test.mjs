@@ -38,3 +38,33 @@ test("a driver that is disposed of frees its saves", () => {
     }
     assert.equal(match.status, "playing", "the match belongs to the caller");
 });
+
+test("a driver asks the next contact if one does not answer, refuses it, or has no match", () => {
+    const game = () => ({
+        step: () => {}, save: () => 0, load: () => {}, hash: () => "0".repeat(32), encode: () => new Uint8Array(1), decode: () => {},
+    });
+    const driver = (options, contacts) => {
+        const sent = [];
+        const match = new L.Match({ seats: 2, ...options });
+        const send = (to, packet) => sent.push({ to: to[0], packet });
+        return { match, sent, driver: new L.MatchDriver(match, game(), send, contacts && { contacts }) };
+    };
+    // Nobody is at address 1. At 2 is a peer that joins itself, at 3 the host of another game.
+    const members = new Map([
+        [2, driver({ contact: address(9) })],
+        [3, driver({ offer: Uint8Array.of(7) })],
+        [4, driver({})],
+        [5, driver({ contact: address(1) }, () => [1, 2, 3, 4].map(address))],
+    ]);
+    const guest = members.get(5).match;
+    for (let now = 0; now < 12_000; now += 10) {
+        for (const [from, member] of members) {
+            member.driver.update(now, (seats) => new Uint8Array(seats.length));
+            for (const { to, packet } of member.sent.splice(0)) {
+                members.get(to)?.driver.receive(now, address(from), packet);
+            }
+        }
+    }
+    assert.equal(guest.status, "playing");
+    assert.throws(() => new L.MatchDriver(guest, game(), () => {}, { contact: 1 }), { code: "VALUE" });
+});

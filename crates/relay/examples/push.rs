@@ -20,12 +20,14 @@ use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::peer::{Peer, PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, Recording};
-use lockstep2d::session::Status;
+use lockstep2d::session::{Event, Status};
 use lockstep2d::world::{Command, Config, Snapshot, World};
 use lockstep2d_relay::Relay;
 use serde_json::json;
 
 const SEATS: u8 = 4;
+/// Time after which another member is asked, if the contact does not answer.
+const CONTACT_PATIENCE: Duration = Duration::from_secs(2);
 
 /// The game. Its whole state is the world: `players` never changes.
 struct Push {
@@ -145,6 +147,12 @@ fn enter(arguments: &Arguments) -> Result<Peer<Push, Relay>, Box<dyn Error>> {
     })
 }
 
+fn ask_another(peer: &mut Peer<Push, Relay>) {
+    if let Some(contact) = peer.transport_mut().next_contact() {
+        peer.ask(contact);
+    }
+}
+
 /// Converts a replay of `Push` to one of the sandbox, whose inputs are commands.
 fn as_sandbox(file: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
     let refused = |verdict: lockstep2d::replay::Verdict| verdict.to_string();
@@ -167,8 +175,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     peer.end_at(arguments.ticks);
     let mut replay = Vec::new();
     let start = SystemTime::now().duration_since(UNIX_EPOCH)?;
+    let mut asked_at = Duration::ZERO;
     while peer.status() != Some(Status::Closed) {
-        peer.update(SystemTime::now().duration_since(UNIX_EPOCH)?.saturating_sub(start))?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH)?.saturating_sub(start);
+        peer.update(now)?;
+        let is_inside = peer.status().is_some() || peer.download().is_some();
+        if !is_inside && now.saturating_sub(asked_at) >= CONTACT_PATIENCE {
+            asked_at = now;
+            ask_another(&mut peer);
+        }
         while peer.is_due() {
             // The bot changes its direction every 40 ticks, and jumps every 90 ticks.
             let tick = peer.tick();
@@ -177,8 +192,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             peer.advance(&[input | jump])?;
         }
         while let Some(event) = peer.next_event() {
-            if let PeerEvent::Desync(desync) = event {
-                return Err(format!("desync: {desync:?}").into());
+            match event {
+                PeerEvent::Desync(desync) => return Err(format!("desync: {desync:?}").into()),
+                // This peer has to join again.
+                PeerEvent::Session(Event::TooFarBehind) => ask_another(&mut peer),
+                _ => {}
             }
         }
         replay.extend(peer.take_replay());

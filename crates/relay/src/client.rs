@@ -102,6 +102,7 @@ enum State {
 ///     None => Peer::<MyGame, _>::host(setup, options, me, relay)?,
 ///     Some(contact) => Peer::<MyGame, _>::join(setup, options, me, relay, contact)?,
 /// };
+/// // While `Peer::status` is `None` for two seconds, `peer.transport_mut().next_contact()` is another contact to ask.
 /// # Ok(peer)
 /// # }
 /// # fn rand_bytes() -> [u8; 16] { [7; 16] }
@@ -111,6 +112,8 @@ pub struct Relay {
     state: State,
     own: Address,
     others: Vec<Address>,
+    /// Number of calls of [`Relay::next_contact`].
+    turn: usize,
 }
 
 impl fmt::Debug for Relay {
@@ -133,7 +136,7 @@ impl Relay {
         let target = Target { url: format!("ws://{host}/{code}"), host, secret };
         let (socket, members) = open(&target, || true).map_err(|why| RelayError::Refused { why })?;
         let own = Address::nowhere();
-        let mut relay = Relay { target, state: State::open(socket), own, others: Vec::new() };
+        let mut relay = Relay { target, state: State::open(socket), own, others: Vec::new(), turn: 0 };
         relay.set_members(&members);
         Ok(relay)
     }
@@ -148,6 +151,14 @@ impl Relay {
     #[must_use]
     pub fn others(&self) -> &[Address] {
         &self.others
+    }
+
+    /// Another member, for `Peer::ask`, if the contact does not answer. The first contact is the first of
+    /// [`others`](Relay::others); successive calls return the members after it in turn. `None` if nobody else is in the
+    /// room.
+    pub fn next_contact(&mut self) -> Option<Address> {
+        self.turn = self.turn.wrapping_add(1);
+        self.others.get(self.turn.checked_rem(self.others.len())?).copied()
     }
 
     /// Whether there is a connection to the relay at the moment.

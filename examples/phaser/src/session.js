@@ -62,7 +62,8 @@ export class Session {
         this.relay = relay;
         this.room = room;
         this.match = new Match({ seats: SEATS, offer: nativeOffer({ rules: RULES, seats: SEATS }), ...options });
-        this.driver = new MatchDriver(this.match, this.game, (to, packet) => relay?.send(to, packet));
+        const contacts = () => relay?.others ?? [];
+        this.driver = new MatchDriver(this.match, this.game, (to, packet) => relay?.send(to, packet), { contacts });
         if (relay) {
             // Packets drive the match too, because browsers slow down timers in the background.
             relay.onPacket = (from, packet) => {
@@ -108,8 +109,12 @@ export class Session {
             if (kind === "desync") {
                 this.error = `the states differ after ${tick} ticks`;
             } else if (kind === "refused" && reason !== "notReady") {
+                // The driver asks another member, which may let this page join.
                 this.error = `refused: ${reason}`;
-            } else if (kind === "state" && tick > 0) {
+            } else if (kind === "state" && tick === 0) {
+                this.error = "";
+            } else if (kind === "state") {
+                this.error = "";
                 // The page has joined a match that had already begun. It lacks the inputs of the first ticks, so it
                 // cannot record a replay.
                 this.recording = undefined;

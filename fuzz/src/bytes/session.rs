@@ -86,10 +86,13 @@ fn play(session: &mut lockstep2d::session::Session, now: u64) {
     while session.next_event().is_some() {}
 }
 
-/// Corrects the checksum of a packet for the match with the tag `tag`.
-pub fn repair(tag: u64, bytes: &mut [u8]) {
+/// Corrects the checksum of a packet to `receiver`, for the match with the tag `tag`. The checksum of packets for joining
+/// does not depend on the receiver.
+pub fn repair(tag: u64, receiver: PeerId, bytes: &mut [u8]) {
+    let is_join_packet = bytes.get(8).is_some_and(|&kind| kind >= 0x80);
+    let seed = if is_join_packet { tag } else { tag ^ u64::from(receiver.0) };
     if let Some((sum, body)) = bytes.split_first_chunk_mut::<4>() {
-        let digest = twox_hash::XxHash3_128::oneshot_with_seed(tag, body).to_le_bytes();
+        let digest = twox_hash::XxHash3_128::oneshot_with_seed(seed, body).to_le_bytes();
         sum.copy_from_slice(&digest[..4]);
     }
 }
@@ -111,11 +114,11 @@ pub fn run(bytes: &[u8]) -> bool {
             mutate(&mut source, &mut packet);
         }
         let how = source.byte();
-        if how & 1 == 0 {
-            repair(TAG, &mut packet);
-        }
         if how & 2 == 0 {
             (from, to) = (source.below(COUNT + 1), source.below(COUNT));
+        }
+        if how & 1 == 0 {
+            repair(TAG, identity(to).id, &mut packet);
         }
         if let Some(endpoint) = game.endpoints.get_mut(to) {
             endpoint.receive(game.now, address(from), &packet);

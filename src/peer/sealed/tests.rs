@@ -80,3 +80,16 @@ fn the_silent_sender_gives_way() {
     }
     assert_eq!(bob.windows.len(), SENDERS_MAX);
 }
+
+/// A peer has other work to do than to reject forged packets.
+#[test]
+fn a_call_rejects_a_bounded_number_of_packets() {
+    let (network, _, mut bob, bytes) = on_the_way();
+    let mut forged = bytes.clone();
+    forged[20] ^= 1;
+    let mut port = network.port(1);
+    (0..REJECTED_MAX + 7).for_each(|_| port.send(&forged, &Network::address(2)));
+    port.send(&bytes, &Network::address(2));
+    assert_eq!(bob.receive(), None);
+    assert!(bob.receive().is_some(), "the next call goes on");
+}

@@ -364,8 +364,10 @@ api! {
     }
 
     /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
-    /// majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
-    /// withdrawn, so base it on the state of a confirmed tick (`ls2d_match_ticks`).
+    /// majority has decided on the end, other peers can get seats. The request of one peer with a vote (a player with a
+    /// seat, or a dedicated server) suffices and cannot be withdrawn, so base it on the state of a confirmed tick
+    /// (`ls2d_match_ticks`). Without a vote, the request has no effect until this peer gets a seat, and none if its tick
+    /// has passed by then.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         tell(handle, |session| session.end_at(ticks))
     }

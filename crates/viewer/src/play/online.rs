@@ -57,6 +57,8 @@ pub struct Online<G: Game, T: Transport> {
     told: Option<&'static str>,
     /// Whether play waits for another peer.
     waiting: bool,
+    /// Whether this peer has to join again.
+    too_far_behind: bool,
     /// Error that ended the match.
     ended: Option<PeerError>,
     /// Empty world, shown for a game without a world.
@@ -76,6 +78,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
             desync: None,
             told: None,
             waiting: false,
+            too_far_behind: false,
             ended: None,
             nothing: World::default(),
         }
@@ -125,7 +128,8 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
             PeerEvent::Session(SessionEvent::Resumed) => self.waiting = false,
             PeerEvent::Session(SessionEvent::Seated { .. }) => self.told = Some("somebody has joined"),
             PeerEvent::Session(SessionEvent::Unseated { .. }) => self.told = Some("somebody has left"),
-            PeerEvent::Session(SessionEvent::TooFarBehind) => self.told = Some("too far behind the others"),
+            PeerEvent::Session(SessionEvent::TooFarBehind) => self.too_far_behind = true,
+            PeerEvent::Joined { .. } => self.too_far_behind = false,
             _ => {}
         }
     }
@@ -144,6 +148,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
             (None, Some(PeerDesync { tick, ours, theirs, .. }), _) => {
                 return format!("after tick {tick} the state is {ours} here and {theirs} elsewhere");
             }
+            _ if self.too_far_behind => "too far behind the others: join the match again",
             (None, None, Some(Status::Playing)) if self.waiting => "waiting for somebody",
             (None, None, Some(Status::Playing)) => self.told.unwrap_or("playing"),
             (None, None, Some(Status::Waiting)) => "waiting for more players",

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use lockstep2d::peer::{PeerDesync, PeerEvent};
-use lockstep2d::session::Status;
+use lockstep2d::session::{Event, Status};
 use lockstep2d_cli::Exit;
 use lockstep2d_shove::Bot;
 use lockstep2d_shove::online::{self, UdpPeer};
@@ -115,6 +115,9 @@ fn take_part(
         online::play_due(peer, |game, seat| pad_of_bot(&mut bots, arguments.seed, seat, game))?;
         while let Some(event) = peer.next_event() {
             log.say(peer, now, &event);
+            if let PeerEvent::Session(Event::TooFarBehind) = event {
+                return Err("too far behind the others: join the match again".into());
+            }
             if let PeerEvent::Desync(found) = event
                 && desync.is_none()
             {
