@@ -8,7 +8,7 @@ use super::super::pair::{UNIT, beyond};
 use super::sub_step::SubStep;
 use super::{MovingBody, SHIFT_MAX};
 use crate::math::{Speed, Unit};
-use crate::simd::{Kernel, Lanes, VelocityW};
+use crate::simd::{GROUND, Kernel, Lanes, VelocityW};
 
 pub(super) struct Velocities<'a> {
     pub(super) moving: &'a [MovingBody],
@@ -60,7 +60,8 @@ fn one_by_one(
     bodies: &[Cell<SolverBody>],
     mut integrate: impl FnMut(&MovingBody, &mut SolverBody),
 ) {
-    for moving in moving {
+    // Other threads read the ground at the same time.
+    for moving in moving.iter().filter(|moving| moving.index != GROUND) {
         let place = &bodies[moving.index as usize];
         let mut body = place.get();
         integrate(moving, &mut body);

@@ -65,7 +65,10 @@ impl Joint {
     /// smaller, as after [`JointDef::fitted`].
     pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
-        if !same_kind || !def.enabled {
+        // The impulses of a rigid and of a soft weld have different meanings.
+        let same_impulses =
+            same_kind && hinge_parts(&def.kind).is_some() == hinge_parts(&self.def.kind).is_some();
+        if !same_impulses || !def.enabled {
             self.impulses = JointImpulses::default();
         }
         *self.def = def;

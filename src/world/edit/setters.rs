@@ -297,8 +297,7 @@ impl World {
     /// no interior.
     #[doc(alias = "wind")]
     pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
-        let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
-        if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
+        self.change_shape(id, |def| def.area = area)
     }
 
     /// Prepares for a change of the mass from 0 to a positive value or back. Contacts and joints with other bodies

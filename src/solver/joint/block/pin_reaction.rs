@@ -3,10 +3,10 @@
 //! In the state, the impulse of the point does not contain the reaction `-q L` to an impulse `L` on the angle
 //! (`hinge/angle/pinned.rs`). In a block it does, because the rows of a block are independent of each other.
 
-use super::super::hinge::HingeSet;
+use super::super::hinge::{ANGLE_MAX, HingeSet};
 use super::super::list::JointList;
 use super::unit::Source;
-use super::{Block, Blocks, round_shift_wide, saturate_wide};
+use super::{Block, Blocks, EXTRA_BITS, round_shift_wide, saturate_wide};
 
 impl Blocks {
     /// Prepares the impulses of the last tick for geometric stiffness. The rows must be those of the current pose.
@@ -32,6 +32,9 @@ impl Block {
                 Source::HingeLimit(..) | Source::HingeDrive(_) => impulses[unit.row],
                 Source::Part(_) => continue,
             };
+            // The state has no larger impulse on the angle, so neither has the reaction that belongs to it.
+            let most = i64::from(ANGLE_MAX.to_bits()) << EXTRA_BITS;
+            let angle = angle.clamp(-most, most);
             for (impulse, spread) in impulses[point..].iter_mut().zip(spread) {
                 let reaction = round_shift_wide(i128::from(spread) * i128::from(sign * angle), 24);
                 *impulse = impulse.saturating_add(saturate_wide(reaction));
