@@ -4,6 +4,7 @@ mod areas;
 mod assembly;
 mod assembly_energy;
 mod belts;
+mod bullets;
 mod capsule;
 mod chain;
 mod collisions;
