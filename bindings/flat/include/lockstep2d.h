@@ -1649,8 +1649,10 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 ls2d_status ls2d_match_leave(uint32_t handle);
 
 /* Requests an end of the match after `ticks` ticks. The request is sent two seconds before the end. Until a
- * majority has decided on the end, other peers can get seats. The request of one peer suffices and cannot be
- * withdrawn, so base it on the state of a confirmed tick (`ls2d_match_ticks`). */
+ * majority has decided on the end, other peers can get seats. The request of one peer with a vote (a player with a
+ * seat, or a dedicated server) suffices and cannot be withdrawn, so base it on the state of a confirmed tick
+ * (`ls2d_match_ticks`). Without a vote, the request has no effect until this peer gets a seat, and none if its tick
+ * has passed by then. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Tells the other peers that this peer requests a pause (1) or withdraws its request (0). The match plays on:

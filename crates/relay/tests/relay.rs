@@ -86,7 +86,9 @@ fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
     let mut stranger = server.enter("other", 4);
     until_others(&mut a, &[*b.own(), *c.own()]);
     assert_eq!(c.others(), [*a.own(), *b.own()]);
-    assert!(stranger.others().is_empty());
+    let contacts = [(); 3].map(|()| c.next_contact());
+    assert_eq!(contacts, [Some(*b.own()), Some(*a.own()), Some(*b.own())], "the first contact was `a`");
+    assert!(stranger.others().is_empty() && stranger.next_contact().is_none());
 
     let to = *b.own();
     a.send(b"to b", &to);
