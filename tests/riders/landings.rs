@@ -79,6 +79,7 @@ fn a_platform_that_is_placed_elsewhere_leaves_its_rider() {
         let mover = Mover::new(shapes()[0].1).expect("valid");
         let mut state = MoverState::at(at(fx!(50), fx!(0.7001)));
         world.step();
+        state.velocity.y = -fall(60);
         state = world.move_character(&mover, &state, QueryFilter::default()).state;
         assert!(state.is_on_ground());
         world.set_transform(lift, (fx!(0), fx!(-0.5)), Angle::ZERO).expect("there");
