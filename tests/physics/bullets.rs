@@ -88,7 +88,8 @@ fn a_bullet_does_not_pass_a_flipper() {
     });
 }
 
-/// A flipper drives a ball against a wall. The ball does not pass the wall.
+/// A flipper drives a ball against a wall of 4 cm. The ball is squeezed, but its centre does not pass the middle of the
+/// wall.
 #[test]
 fn a_flipper_does_not_push_a_bullet_into_a_wall() {
     let drives = [
@@ -112,7 +113,7 @@ fn a_flipper_does_not_push_a_bullet_into_a_wall() {
                 world.step();
                 let y = world.body(ball).expect("alive").position().y;
                 let what = format!("{drive:?}, {continuous:?}, {omega} rad/s, phase {phase}, tick {tick}");
-                assert!(y < fx!(0.38), "{what}: at {y} m");
+                assert!(y < fx!(0.4), "{what}: at {y} m");
             }
         }
     });

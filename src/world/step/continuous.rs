@@ -7,7 +7,8 @@
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, and bullets against all moving bodies
 //! that are not bullets, once these have been moved. Whether a body is fast is judged relative to the moving body, so
-//! that a body on a platform or in a drum is not held back. If such a body sleeps, it wakes in the tick in which a kinematic body would pass through it.
+//! that a body on a platform or in a drum is not held back. If such a body sleeps, it wakes in the tick in which a
+//! kinematic body would pass through it.
 
 use core::ops::ControlFlow;
 
