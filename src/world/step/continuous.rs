@@ -7,8 +7,8 @@
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, and bullets against all moving bodies
 //! that are not bullets, once these have been moved. Whether a body is fast is judged relative to the moving body, so
-//! that a body on a platform or in a drum is not held back. If such a body sleeps, it wakes in the tick in which a
-//! kinematic body would pass through it.
+//! that a body on a platform or in a drum is not held back. A sleeping body with [`Continuous::Kinematic`] wakes in the
+//! tick in which a kinematic body would pass through it.
 
 use core::ops::ControlFlow;
 
@@ -126,8 +126,8 @@ fn stopped_pose(state: &State, swept: &SweptBody, fraction: Fx) -> Pose {
     Pose { centre: start + (end - start).scale(fraction), angle }
 }
 
-/// The motion of a body that a moving obstacle has stopped, and carries from the impact to the end of the tick. A dynamic
-/// obstacle does so as well: otherwise a flipper would pass the bullet that it has stopped.
+/// The motion of a body that a moving obstacle has stopped, and carries from the impact to the end of the tick. If it
+/// did not carry the body, a flipper would pass the bullet that it has stopped.
 fn carried_body(state: &State, scratch: &Scratch, slot: u32, impact: Impact) -> SweptBody {
     let body = state.bodies.at(slot);
     let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
@@ -192,7 +192,7 @@ fn first_impact(
                     let support = SupportShape::of(posed, body.centre);
                     (support, target_of(&support))
                 });
-                // Positions relative to the obstacle, in world axes at the end of the tick.
+                // The middle of the shape relative to the obstacle's pose at the end of the tick.
                 let there_at = |fraction: Fx| {
                     let (moved, turned) = swept.sweep.at(fraction);
                     let middle = body.centre + moved + turned.apply_wide(support.middle());
@@ -267,8 +267,8 @@ fn stop(
 }
 
 /// Whether a shape that meets a moving obstacle at a fraction of the tick ends the tick in front of the surface that it
-/// meets. The solver has then moved it along with the obstacle. The straight line of the sweep leads through an obstacle
-/// that turns and pushes the shape ahead.
+/// meets, because the obstacle has pushed it ahead. If the obstacle turns, the path of the shape is curved, and the
+/// straight line of the sweep leads through the obstacle.
 fn ends_in_front(
     obstacle: (&SupportShape, &Sweep),
     shape: (&SupportShape, &Sweep),
