@@ -55,12 +55,6 @@ impl Contact {
         &self.points[..usize::from(self.count.min(2))]
     }
 
-    /// Whether the shapes pressed on each other in the last tick.
-    #[inline]
-    pub(crate) fn presses(&self) -> bool {
-        self.points().iter().any(|point| point.normal.is_positive())
-    }
-
     #[inline]
     pub(crate) fn impulse_of(&self, feature: Feature) -> Option<PointImpulse> {
         match self.points {

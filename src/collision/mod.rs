@@ -20,6 +20,6 @@ pub(crate) use narrow_phase::{
 pub(crate) use query::{
     Distance, RelativePose, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray,
     cast_shape, contains_point, distance, first_impact, first_overlap, goes_against, normal_at, overlap,
-    separation_at_end, time_of_impact,
+    time_of_impact,
 };
 pub(crate) use shape::{Fraction, Link, Outline, PosedShape, SupportShape, arm_of, to_grid};

@@ -131,6 +131,10 @@ impl BodyList {
         &self.facts[index as usize]
     }
 
+    pub(super) fn body_at(&self, index: u32) -> &SolverBody {
+        &self.bodies[index as usize]
+    }
+
     /// The body in a slot, or the ground if that body is not in this list.
     pub(super) fn body(&self, slot: u32) -> &SolverBody {
         &self.bodies[self.index_of(slot) as usize]

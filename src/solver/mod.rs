@@ -155,10 +155,11 @@ impl Solver {
         pairs: &[ActiveContact],
         manifolds: &[Manifold],
         contacts: &[Contact],
+        tuning: &Tuning,
     ) {
         let parts = self.parts;
         let Solver { list, moving, joints, colouring, contacts: set, machine, threads, .. } = self;
-        let source = ContactSource { pairs, manifolds, contacts, list };
+        let source = ContactSource { pairs, manifolds, contacts, list, mean_time: tuning.mean_time };
         set.sort(&source, colouring, parts);
         self.warm_starts = set.fill(&source, colouring, threads, parts, *machine);
         self.contact_velocities.resize_with(parts, ContactVelocities::default);

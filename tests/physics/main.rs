@@ -4,7 +4,6 @@ mod areas;
 mod assembly;
 mod assembly_energy;
 mod belts;
-mod bullets;
 mod capsule;
 mod chain;
 mod collisions;

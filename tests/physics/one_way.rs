@@ -223,31 +223,3 @@ fn what_turns_round_half_way_falls_back_between_the_shapes_of_a_platform() {
         }
     }
 }
-
-/// A level of one body has a one-way floor and one-way walls. A body that jumps up through the floor while it flies
-/// against the solid side of a wall passes the floor, and not the wall.
-#[test]
-fn what_passes_one_shape_of_a_platform_is_held_by_another_in_a_different_direction() {
-    let slab = ShapeDef::new(Polygon::rectangle(fx!(4), fx!(0.2)).expect("valid")).one_way(up());
-    let upright = ShapeDef::new(Polygon::rectangle(fx!(0.1), fx!(6)).expect("valid"));
-    let wall = upright.offset((fx!(2), fx!(0))).one_way(Angle::from_degrees(fx!(180)));
-    for (name, shape) in movers() {
-        for speed in [fx!(1), fx!(3), fx!(8), fx!(20)] {
-            for phase in 0..16 {
-                let mut world = World::default();
-                world.spawn(&BodyDef::fixed(), &[slab, wall]).expect("valid");
-                let x = fx!(1.2) - speed * (40 + phase) / 240;
-                let def = BodyDef::dynamic().position((x, fx!(-2.5))).velocity((speed, fx!(11)));
-                let body = world.spawn(&def, &[shape.friction(fx!(0))]).expect("valid");
-                let mut highest = fx!(-9);
-                for _ in 0..180 {
-                    world.step();
-                    let at = world.body(body).expect("there").position();
-                    highest = highest.max(at.y);
-                    assert!(at.x < fx!(1.9), "{name}, {speed} m/s, phase {phase}: at {at}");
-                }
-                assert!(highest > fx!(1), "{name}, {speed} m/s, phase {phase}: {highest} m high");
-            }
-        }
-    }
-}

@@ -11,6 +11,5 @@ pub(crate) use immersion::{RelativePose, Ring};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, TOLERANCE as SKIN_TOLERANCE, cast_shape, goes_against};
 pub(crate) use time_of_impact::{
-    StartPolicy, Sweep, TimeOfImpact, first_impact, first_overlap, normal_at, separation_at_end,
-    time_of_impact,
+    StartPolicy, Sweep, TimeOfImpact, first_impact, first_overlap, normal_at, time_of_impact,
 };

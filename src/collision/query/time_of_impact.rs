@@ -59,11 +59,6 @@ impl Sweep {
         ((self.end - self.start).scale(fraction), rotation)
     }
 
-    /// Rotation from a fraction of the tick to the end, in units of 2^-32 turn.
-    pub(crate) fn turned_after(&self, fraction: Fx) -> i64 {
-        self.turn.saturating_sub(self.turned(fraction))
-    }
-
     /// Rotation from the start to a fraction of the tick, in units of 2^-32 turn.
     pub(crate) fn turned(&self, fraction: Fx) -> i64 {
         let turned = i128::from(self.turn) * i128::from(fraction.to_bits());
@@ -139,23 +134,6 @@ pub(crate) fn normal_at(
 ) -> Option<Vec2<Unit>> {
     let (a, b) = swept_pair(a, sweep_a, b, sweep_b, Fx::ONE).ok()?;
     Some(distance(&a.at(fraction).support, &b.at(fraction).support).normal)
-}
-
-/// Separation in metres at the end of the tick, along the normal from A to B at a fraction of the tick, which turns with
-/// A for the rest of the tick. `None` as in [`normal_at`].
-pub(crate) fn separation_at_end(
-    (a, sweep_a): (&SupportShape, &Sweep),
-    (b, sweep_b): (&SupportShape, &Sweep),
-    fraction: Fx,
-) -> Option<Fx> {
-    let (a, b) = swept_pair(a, sweep_a, b, sweep_b, Fx::ONE).ok()?;
-    let normal = distance(&a.at(fraction).support, &b.at(fraction).support).normal;
-    let rest = Angle::from_turns(Fx::from_bits(sweep_a.turned_after(fraction)));
-    let normal = Rot::from_angle(rest).apply(normal);
-    let (a, b) = (a.at(Fx::ONE).support, b.at(Fx::ONE).support);
-    let furthest = a.points().iter().map(|&point| along(normal, point)).max()?;
-    let nearest = b.points().iter().map(|&point| along(normal, point)).min()?;
-    Some(to_fx(nearest.saturating_sub(furthest)).saturating_sub(radii(&a, &b)))
 }
 
 const OVERLAP_STEPS_MAX: u32 = 256;

@@ -6,14 +6,14 @@ mod tests;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
-use super::arms::{Arms, common_rotation};
+use super::arms::{Arms, BodyMotion};
 use super::prospect::Prospect;
 use super::restitution::ELASTIC;
 use super::{Features, Surface, WarmStarts};
 use alloc::vec::Vec;
 
 use crate::collision::{Contact, Manifold, Pair, PointImpulse};
-use crate::math::{Length, Step, convert};
+use crate::math::{Fx, Length, Step, convert};
 use crate::simd::{Lanes, Quad, prefetch};
 
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +35,6 @@ pub(crate) struct ActiveContact {
     pub(crate) extras: bool,
     /// Whether the rows have not changed since the last tick.
     pub(crate) keeps_rows: bool,
-    /// Whether the bodies press on each other and turn as one, so that the normal and the arms turn with them
-    /// ([`Arms::turn`]).
-    pub(crate) turns_as_one: bool,
 }
 
 /// The contacts of a tick, from which batches are filled.
@@ -48,6 +45,8 @@ pub(in crate::solver) struct ContactSource<'a> {
     /// The contacts of the state, with the impulses of the last tick.
     pub(in crate::solver) contacts: &'a [Contact],
     pub(in crate::solver) list: &'a BodyList,
+    /// Mean time of the sub-steps in seconds since the start of the tick.
+    pub(in crate::solver) mean_time: Fx,
 }
 
 /// The inputs of one lane of a batch. The quads of all lanes are transposed into vectors.
@@ -174,7 +173,14 @@ impl ContactSource<'_> {
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let mut arms = Arms::of(manifold, &memory.kept);
-        let turned = pair.turns_as_one && arms.turn(common_rotation(a.rotation, b.rotation));
+        let presses = old_first.normal.is_positive() || old_second.normal.is_positive();
+        let motions = || {
+            bodies.map(|index| BodyMotion {
+                shift: self.list.body_at(index).velocity.widen().scale(self.mean_time),
+                rotation: self.list.facts(index).rotation,
+            })
+        };
+        let turned = presses && a.rotation != 0 && b.rotation != 0 && arms.turn_with(motions());
         let Arms { normal: n, to_a, to_b, to_second } = arms;
         let changed = self.changed(bodies);
         *input = Input {

@@ -52,7 +52,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) touching: Vec<ActiveContact>,
     /// Possible hit events. A hit event is reported only if the shapes also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
-    /// Impacts, and contacts whose shapes miss each other, in the order of contacts.
+    /// The contacts whose manifolds are those at the time of an impact, and those whose shapes miss each other.
     pub(crate) impacts: Vec<PendingImpact>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
@@ -76,8 +76,7 @@ pub(crate) struct PendingHit {
     pub(crate) event: HitEvent,
 }
 
-/// A contact with the manifold at the time of its impact, which may be the start of the tick, or a contact whose shapes
-/// miss each other.
+/// A contact with the manifold at the time of its impact, or whose shapes miss each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingImpact {
     /// Index of the manifold.
@@ -97,10 +96,10 @@ pub(crate) struct PendingImpact {
 /// Buffers for the order of impacts. Their contents do not matter.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ImpactOrder {
-    /// Fraction of the tick and index of each impact.
-    pub(crate) by_time: Vec<(Unit, u32)>,
-    /// For each body slot, the index of the body's first impact.
-    pub(crate) firsts: Vec<Option<u32>>,
+    /// Body slot, fraction of the tick and index of each impact.
+    pub(crate) by_body: Vec<(u32, Unit, u32)>,
+    /// Indices of the impacts that get the manifold at the start of the tick.
+    pub(crate) later: Vec<u32>,
     /// Manifolds of the impacts that get none.
     pub(crate) removed: Vec<u32>,
 }

@@ -5,12 +5,11 @@
 use alloc::vec::Vec;
 
 use super::sensor_events::push_sensor_events;
-use super::speculative::approach;
 use crate::body::Handle;
 use crate::collision::{Contact, Manifold, Pair};
-use crate::math::{Fx, Length, Step, Vec2, fx_mul, widen};
+use crate::math::{Fx, fx_mul, widen};
 use crate::solver::ContactResults;
-use crate::world::cache::{MotionCache, PendingHit, PredictedMotion, Scratch};
+use crate::world::cache::{MotionCache, Scratch};
 use crate::world::events::{ContactEvent, Events, HitEvent};
 use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
@@ -134,35 +133,4 @@ fn end(pair: Option<Reported>, events: &mut Events) {
             push_sensor_events(&mut events.sensor_end, ids, side, Fx::ZERO);
         }
     }
-}
-
-/// The hit event of a contact that approaches at `hit_speed` or more; `None` for a slower contact. The event is
-/// reported only if the solver then finds a contact impulse. `moved_by` has the displacements of the bodies from the
-/// start of the tick until the time of the manifold.
-pub(super) fn fast_approach(
-    state: &State,
-    motion: &MotionCache,
-    index: u32,
-    contact: &Contact,
-    manifold: &Manifold,
-    moved_by: [Vec2<Length>; 2],
-) -> Option<PendingHit> {
-    let body_motion = |shape: u32, by: Vec2<Length>| {
-        let start = motion.motion(motion.shape(shape));
-        PredictedMotion { centre: start.centre + by.widen(), ..*start }
-    };
-    let (a, b) = contact.shapes;
-    let closing_at = approach(&body_motion(a, moved_by[0]), &body_motion(b, moved_by[1]), manifold);
-    let closings = manifold.points().iter().map(|point| (point, closing_at(point)));
-    let (point, closing) = closings.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    let metres = Fx::from_bits(closing.saturating_mul(1 << (Fx::FRAC_NBITS - Step::FRAC_NBITS)));
-    let approach_speed = metres.saturating_mul_int(state.config.tick_rate.into());
-    if approach_speed < state.config.hit_speed {
-        return None;
-    }
-    let point = manifold.origin + point.anchor.widen();
-    let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
-    let normal = manifold.normal;
-    let event = HitEvent { shape_a, shape_b, point, normal, approach_speed, impulse: Fx::ZERO };
-    Some(PendingHit { contact: index, event })
 }

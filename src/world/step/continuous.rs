@@ -3,11 +3,11 @@
 //!
 //! Speculative contacts stop most fast bodies. The sweep also stops bodies whose motion these contacts cannot predict,
 //! such as rotating rods and bodies that gain speed within the tick. A stopped body keeps its velocity and continues in
-//! the next tick. A moving obstacle that stops a body carries it for the rest of the tick, up to the first fixed body.
+//! the next tick.
 //!
-//! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, and bullets against all moving bodies
-//! that are not bullets, once these have been moved. Whether a body is fast is judged relative to the moving body, so
-//! that a body on a platform or in a drum is not held back. A sleeping body with [`Continuous::Kinematic`] wakes in the
+//! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
+//! such a body is fast is judged relative to the kinematic body, so that a body on a platform or in a drum is not held
+//! back. A kinematic body that stops a body carries it for the rest of the tick. If such a body sleeps, it wakes in the
 //! tick in which a kinematic body would pass through it.
 
 use core::ops::ControlFlow;
@@ -15,8 +15,7 @@ use core::ops::ControlFlow;
 use super::motion::{at_start, made_motion, predicted_motion};
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{
-    Pair, SupportShape, Sweep, TimeOfImpact, is_open, normal_at, pass_direction, separation_at_end,
-    time_of_impact,
+    Pair, SupportShape, Sweep, TimeOfImpact, is_open, normal_at, pass_direction, time_of_impact,
 };
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Unit, Vec2, fx_mul};
@@ -30,9 +29,6 @@ const SWEPT_MIN: Fx = fx!(0.0005);
 
 /// Work units of a search for a time of impact, which takes some 2 µs, or up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
-
-/// Half a turn in units of 2^-32 turns.
-const HALF_TURN: u64 = 1 << 31;
 
 /// Number of shapes near a sweep that together cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
@@ -57,7 +53,7 @@ pub(super) fn swept_body(
         _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
     };
     let is_fast = shift.is_longer_than(limit.saturating_sub(turned));
-    let may_be_relative = is_bullet(body) || sees_kinematic(body) && may_have_kinematic;
+    let may_be_relative = sees_kinematic(body) && may_have_kinematic;
     (is_fast || may_be_relative).then_some(SweptBody {
         slot,
         sweep: Sweep { start: body.centre, end: end.centre, turn },
@@ -66,7 +62,7 @@ pub(super) fn swept_body(
     })
 }
 
-/// Whether a body is fast relative to a moving body.
+/// Whether a body is fast relative to a kinematic body.
 fn is_fast_relative(extents: &Extents, &Sweep { start, end, turn }: &Sweep, obstacle: &Sweep) -> bool {
     let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end - carried(obstacle, start, Fx::ZERO);
@@ -82,78 +78,67 @@ fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     sweep.start + after + turned_after.apply_wide(local)
 }
 
-/// Moves a body along its sweep. A moving obstacle carries the body from their impact to the end of the tick, unless a
-/// fixed body is in the way.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody) {
     let mut meter = scratch.meter;
-    let (pose, impact) = swept_pose(state, scratch, swept, &mut meter);
-    move_body(state, scratch, swept.slot, pose);
-    if let Some(impact) = impact {
-        scratch.results.stats.impacts += 1;
-        if state.body_of(impact.obstacle).kind() != BodyKind::Fixed {
-            let carried = carried_body(state, scratch, swept.slot, impact);
-            let wall = first_impact(state, scratch, &carried, false, &mut meter);
-            let pose = wall.map_or(carried.end, |wall| stopped_pose(state, &carried, wall.fraction));
-            move_body(state, scratch, swept.slot, pose);
-        }
-    }
+    let (pose, is_impact) = swept_pose(state, scratch, swept, &mut meter);
     scratch.meter = meter;
+    scratch.results.stats.impacts += u32::from(is_impact);
+    move_body(state, scratch, swept.slot, pose);
 }
 
-/// The pose after the sweep, and the impact that has ended the sweep early.
+/// The pose after the sweep, and whether there is an impact.
 pub(super) fn swept_pose(
     state: &State,
     scratch: &Scratch,
     swept: &SweptBody,
     meter: &mut WorkMeter,
-) -> (Pose, Option<Impact>) {
-    let body = state.bodies.at(swept.slot);
-    let sees_moving = is_bullet(body) || sees_kinematic(body);
-    let impact = first_impact(state, scratch, swept, sees_moving, meter);
-    (impact.map_or(swept.end, |impact| stopped_pose(state, swept, impact.fraction)), impact)
+) -> (Pose, bool) {
+    let impact = first_impact(state, scratch, swept, meter);
+    (impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact)), impact.is_some())
 }
 
 /// The impact on an obstacle, ordered by fraction, then by the slot of the obstacle's shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Impact {
+struct Impact {
     fraction: Fx,
     obstacle: u32,
 }
 
-fn stopped_pose(state: &State, swept: &SweptBody, fraction: Fx) -> Pose {
+/// The pose of a body after an impact. A kinematic obstacle carries the body for the rest of the tick. A dynamic
+/// obstacle does not.
+fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
-    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, fraction);
-    Pose { centre: start + (end - start).scale(fraction), angle }
-}
-
-/// The motion of a body that a moving obstacle has stopped, and carries from the impact to the end of the tick. If it
-/// did not carry the body, a flipper would pass the bullet that it has stopped.
-fn carried_body(state: &State, scratch: &Scratch, slot: u32, impact: Impact) -> SweptBody {
-    let body = state.bodies.at(slot);
-    let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
-    let start = body.centre;
-    let mut end = carried(&obstacle, start, impact.fraction);
-    let locks = body.settings.locks;
-    end.x = if locks.x { start.x } else { end.x };
-    end.y = if locks.y { start.y } else { end.y };
+    let body = state.bodies.at(swept.slot);
+    let mut angle = body.angle + Angle::from_wide_turns(turn, impact.fraction);
+    let mut centre = start + (end - start).scale(impact.fraction);
+    if state.body_of(impact.obstacle).kind() == BodyKind::Kinematic {
+        let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
+        let rest = Fx::ONE - impact.fraction;
+        if sees_kinematic(body) {
+            centre = carried(&obstacle, centre, impact.fraction);
+            angle += Angle::from_wide_turns(obstacle.turn, rest);
+        } else {
+            centre += (obstacle.end - obstacle.start).scale(rest);
+        }
+        let locks = body.settings.locks;
+        centre.x = if locks.x { start.x } else { centre.x };
+        centre.y = if locks.y { start.y } else { centre.y };
+        angle = if body.turns() { angle } else { body.angle };
+    }
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
-    let end = end.max(-edge).min(edge);
-    let turn = if body.turns() { obstacle.turned_after(impact.fraction) } else { 0 };
-    let angle = body.angle + Angle::from_turns(Fx::from_bits(turn));
-    let sweep = Sweep { start, end, turn };
-    SweptBody { slot, sweep, end: Pose { centre: end, angle }, is_fast: true }
+    Pose { centre: centre.max(-edge).min(edge), angle }
 }
 
-/// The first obstacle on a sweep; a fixed one unless `sees_moving`. An exhausted meter ends the search early.
+/// The first obstacle on a sweep. An exhausted meter ends the search early.
 fn first_impact(
     state: &State,
     scratch: &Scratch,
     swept: &SweptBody,
-    sees_moving: bool,
     meter: &mut WorkMeter,
 ) -> Option<Impact> {
     let shapes = &scratch.shapes;
     let body = state.bodies.at(swept.slot);
+    let sees_moving = is_bullet(body) || sees_kinematic(body);
     let extents = shapes.poses().extents(swept.slot);
     // Box around the body's shapes at the start of the sweep, at any rotation.
     let disc = Aabb::new(body.centre, body.centre).expanded(extents.radius);
@@ -182,8 +167,10 @@ fn first_impact(
             if is_near && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
                 let is_fast = match obstacle.kind() {
-                    BodyKind::Fixed => swept.is_fast,
-                    _ => is_fast_relative(&extents, &swept.sweep, &movement),
+                    BodyKind::Kinematic if !is_bullet(body) => {
+                        is_fast_relative(&extents, &swept.sweep, &movement)
+                    }
+                    _ => swept.is_fast,
                 };
                 if !is_fast {
                     return ControlFlow::Continue(());
@@ -192,14 +179,7 @@ fn first_impact(
                     let support = SupportShape::of(posed, body.centre);
                     (support, target_of(&support))
                 });
-                // The middle of the shape relative to the obstacle's pose at the end of the tick.
-                let there_at = |fraction: Fx| {
-                    let (moved, turned) = swept.sweep.at(fraction);
-                    let middle = body.centre + moved + turned.apply_wide(support.middle());
-                    carried(&movement, middle, fraction)
-                };
-                let there_posed = shapes.poses().at(other);
-                if !there_posed.may_stop(there_at(Fx::ZERO)) {
+                if !shapes.poses().at(other).is_solid_from(body.centre + support.middle()) {
                     return ControlFlow::Continue(());
                 }
                 if !meter.spend(IMPACT_WORK) {
@@ -213,12 +193,6 @@ fn first_impact(
                     (&support, &swept.sweep),
                     target,
                 );
-                let passes = |fraction: Fx| {
-                    obstacle.kind() != BodyKind::Fixed
-                        && ends_in_front((&there, &movement), (&support, &swept.sweep), fraction, target)
-                        || !there_posed.stops(there_at(Fx::ZERO), there_at(fraction))
-                };
-                let stopping = stopping.filter(|&fraction| !passes(fraction));
                 let impact = stopping.map(|fraction| Impact { fraction, obstacle: other });
                 first = first.into_iter().chain(impact).min();
             }
@@ -264,20 +238,6 @@ fn stop(
             normal.is_none_or(|normal| !lets_pass(state, shapes, normal))
         }
     })
-}
-
-/// Whether a shape that meets a moving obstacle at a fraction of the tick ends the tick in front of the surface that it
-/// meets, because the obstacle has pushed it ahead. If the obstacle turns, the path of the shape is curved, and the
-/// straight line of the sweep leads through the obstacle.
-fn ends_in_front(
-    obstacle: (&SupportShape, &Sweep),
-    shape: (&SupportShape, &Sweep),
-    fraction: Fx,
-    target: Fx,
-) -> bool {
-    // In more than half a turn, the back of the obstacle comes round.
-    let turns_back = obstacle.1.turned_after(fraction).unsigned_abs() >= HALF_TURN;
-    !turns_back && separation_at_end(obstacle, shape, fraction).is_some_and(|separation| separation >= target)
 }
 
 /// Whether a kinematic body passes over a sleeping body that has to wake for it. The sleeping body has to wake if a

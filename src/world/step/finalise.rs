@@ -71,9 +71,9 @@ fn sweep_bodies(state: &State, scratch: &mut Scratch) {
         let spent = source.solver.threads.run_team(finalised.iter_mut(), |finalised, _| {
             let mut own = meter;
             for swept in finalised.swept.drain(..) {
-                let (pose, impact) = continuous::swept_pose(state, source, &swept, &mut own);
+                let (pose, is_impact) = continuous::swept_pose(state, source, &swept, &mut own);
                 finalised.moved.push((swept.slot, pose));
-                finalised.impacts += u32::from(impact.is_some());
+                finalised.impacts += u32::from(is_impact);
             }
             own.spent() - meter.spent()
         });

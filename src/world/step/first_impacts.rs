@@ -5,16 +5,12 @@
 //! floor. A later impact therefore gets the manifold at the start of the tick. It gets none if the first impact is with
 //! a body that impulses do not move, and the other shape belongs to a dynamic body behind the plane of that impact.
 //! Shapes that miss each other on their paths get none either, unless one of them leaves its path earlier.
-//!
-//! The impacts are examined in the order of time. An impact without a manifold does not take place, so that no body
-//! leaves its path there.
 
-use super::contact_events::fast_approach;
-use crate::collision::{Contact, Manifold};
-use crate::math::{Fx, Step, Unit, Vec2, fx_div, fx_mul, widen};
-use crate::world::cache::{
-    ContactCache, ImpactOrder, MotionCache, NarrowPhaseOutput, PendingHit, PendingImpact,
-};
+use super::speculative::approach;
+use crate::body::{Arena, Body, BodyId};
+use crate::collision::{Contact, KeptManifold, Manifold, ManifoldPoint};
+use crate::math::{Fx, Step, Unit, Vec2, widen};
+use crate::world::cache::{ContactCache, ImpactOrder, MotionCache, NarrowPhaseOutput, PendingImpact, Poses};
 use crate::world::state::State;
 
 /// Fraction of a tick, a 256th, within which impacts count as simultaneous.
@@ -24,81 +20,102 @@ const SIMULTANEOUS: Unit = Unit::lit("0.00390625");
 pub(super) fn withdraw_later_ones(
     contacts: &mut [Contact],
     state: &State,
-    motion: &MotionCache,
+    poses: &Poses,
     touching: Step,
     cache: &mut ContactCache,
 ) {
     let (output, order) = cache.output_mut();
-    let NarrowPhaseOutput { manifolds, approaches, impacts, .. } = output;
-    let ImpactOrder { by_time, firsts, removed } = order;
-    // Impacts at the start of the tick are later than no other impact.
-    if impacts.iter().all(|impact| impact.fraction == 0 && !impact.misses) {
+    if output.impacts.is_empty() {
         return;
     }
-    by_time.clear();
-    by_time.extend((0u32..).zip(&*impacts).map(|(index, impact)| (impact.fraction, index)));
-    by_time.sort_unstable();
-    firsts.clear();
-    firsts.resize(state.bodies.slot_count(), None);
-    removed.clear();
-    for &(fraction, index) in &*by_time {
-        let impact = &impacts[index as usize];
-        // The first impacts of the bodies, if they are earlier than this one.
-        let earlier = impact.bodies.map(|body| {
-            let first = firsts[body as usize].map(|first: u32| &impacts[first as usize]);
-            first.filter(|first| fraction - first.fraction > SIMULTANEOUS)
-        });
-        let is_first = earlier.iter().all(Option::is_none);
-        let is_hidden = [0, 1].into_iter().any(|side| {
-            earlier[side].is_some_and(|first| hides(first, impact, side, manifolds, state, touching))
-        });
-        if is_first && impact.misses || is_hidden {
-            removed.push(impact.manifold);
-            continue;
-        }
-        if !impact.misses {
-            for body in impact.bodies.into_iter().filter(|&body| state.bodies.at(body).is_dynamic()) {
-                firsts[body as usize].get_or_insert(index);
-            }
-        }
-        if !is_first {
-            let contact = &mut contacts[impact.contact as usize];
-            let manifold = &mut manifolds[impact.manifold as usize];
-            (*manifold, contact.kept) = impact.start;
-            if let Ok(at) = approaches.binary_search_by_key(&impact.contact, |hit| hit.contact) {
-                match fast_approach(state, motion, impact.contact, contact, manifold, [Vec2::ZERO; 2]) {
-                    Some(hit) => approaches[at] = at_surface(hit, contact, manifold, state, motion),
-                    None => {
-                        approaches.remove(at);
-                    }
-                }
-            }
-        }
+    list(output, &state.bodies, order);
+    let pending = count(output);
+    add_touching(output, poses.motion(), touching, order);
+    list(output, &state.bodies, order);
+    judge(output, pending, state, touching, order);
+    for &impact in &order.later {
+        let impact = &output.impacts[impact as usize];
+        let (manifold, kept) = impact.start;
+        output.manifolds[impact.manifold as usize] = manifold;
+        contacts[impact.contact as usize].kept = kept;
     }
-    if !removed.is_empty() {
-        removed.sort_unstable();
-        output.remove(removed);
+    if !order.removed.is_empty() {
+        output.remove(&order.removed);
     }
 }
 
-/// The hit event of a manifold at the start of the tick, whose points are half-way between the surfaces. Moves the point
-/// along the normal, with the mean displacement of the bodies, to where the surfaces meet.
-fn at_surface(
-    hit: PendingHit,
-    contact: &Contact,
-    manifold: &Manifold,
-    state: &State,
-    motion: &MotionCache,
-) -> PendingHit {
-    let PendingHit { mut event, .. } = hit;
-    let gap = manifold.points().iter().map(|point| widen(point.separation)).min().unwrap_or_default();
-    let seconds = fx_div(gap, event.approach_speed).unwrap_or_default();
-    let fraction = (seconds * i64::from(state.config.tick_rate)).clamp(Fx::ZERO, Fx::ONE);
-    let (a, b) = contact.shapes;
-    let [a, b] = [a, b].map(|shape| motion.motion(motion.shape(shape)).shift_until(Unit::ONE));
-    let normal = event.normal.widen();
-    event.point += normal.scale(fx_mul(normal.dot(a + b) / 2, fraction));
-    PendingHit { event, ..hit }
+fn count(output: &NarrowPhaseOutput) -> u32 {
+    u32::try_from(output.impacts.len()).expect("fewer than 2^32 contacts")
+}
+
+/// Sorts the impacts of dynamic bodies by body and time.
+fn list(output: &NarrowPhaseOutput, bodies: &Arena<Body, BodyId>, order: &mut ImpactOrder) {
+    let by_body = &mut order.by_body;
+    by_body.clear();
+    for (index, impact) in (0u32..).zip(&output.impacts).filter(|(_, impact)| !impact.misses) {
+        let dynamic = impact.bodies.into_iter().filter(|&body| bodies.at(body).is_dynamic());
+        by_body.extend(dynamic.map(|body| (body, impact.fraction, index)));
+    }
+    by_body.sort_unstable();
+}
+
+/// Adds the contacts of the listed bodies whose shapes touch at the start of the tick, and approach in the tick by more
+/// than the touching distance. They are impacts at the start of the tick.
+fn add_touching(output: &mut NarrowPhaseOutput, motion: &MotionCache, touching: Step, order: &ImpactOrder) {
+    let NarrowPhaseOutput { manifolds, touching: contacts, impacts, .. } = output;
+    let is_listed = |body: u32| {
+        let at = order.by_body.partition_point(|&(other, ..)| other < body);
+        order.by_body.get(at).is_some_and(|&(other, ..)| other == body)
+    };
+    let pending = impacts.len();
+    for pair in contacts.iter().filter(|pair| is_listed(pair.bodies.0) || is_listed(pair.bodies.1)) {
+        // The impacts up to `pending` are in the order of their manifolds.
+        if impacts[..pending].binary_search_by_key(&pair.manifold, |impact| impact.manifold).is_ok() {
+            continue;
+        }
+        let manifold = manifolds[pair.manifold as usize];
+        let motions = [pair.shapes.0, pair.shapes.1].map(|shape| motion.motion(motion.shape(shape)));
+        let closing_at = approach(motions[0], motions[1], &manifold);
+        let hits = |point: &ManifoldPoint| {
+            point.separation <= touching && closing_at(point) > i64::from(touching.to_bits())
+        };
+        if manifold.points().iter().any(hits) {
+            impacts.push(PendingImpact {
+                manifold: pair.manifold,
+                contact: pair.contact,
+                bodies: [pair.bodies.0, pair.bodies.1],
+                fraction: Unit::ZERO,
+                misses: false,
+                start: (manifold, KeptManifold::NONE),
+            });
+        }
+    }
+}
+
+/// Lists the later ones among the first `pending` impacts, and those whose manifolds are removed.
+fn judge(output: &NarrowPhaseOutput, pending: u32, state: &State, touching: Step, order: &mut ImpactOrder) {
+    let ImpactOrder { by_body, later, removed } = order;
+    later.clear();
+    removed.clear();
+    for (index, impact) in (0..pending).zip(&output.impacts) {
+        // The first impacts of the bodies, if they are earlier than this one.
+        let earlier = impact.bodies.map(|body| {
+            let at = by_body.partition_point(|&(other, ..)| other < body);
+            let first = by_body
+                .get(at)
+                .filter(|&&(other, first, _)| other == body && impact.fraction - first > SIMULTANEOUS);
+            first.map(|&(.., first)| &output.impacts[first as usize])
+        });
+        let is_first = earlier.iter().all(Option::is_none);
+        let is_hidden = [0, 1].into_iter().any(|side| {
+            earlier[side].is_some_and(|first| hides(first, impact, side, output, state, touching))
+        });
+        if is_first && impact.misses || is_hidden {
+            removed.push(impact.manifold);
+        } else if !is_first {
+            later.push(index);
+        }
+    }
 }
 
 /// Whether the first impact of the body on one side of a later impact stops the body before it reaches the other one.
@@ -106,7 +123,7 @@ fn hides(
     first: &PendingImpact,
     later: &PendingImpact,
     side: usize,
-    manifolds: &[Manifold],
+    output: &NarrowPhaseOutput,
     state: &State,
     touching: Step,
 ) -> bool {
@@ -117,7 +134,7 @@ fn hides(
     if is_dynamic(first.bodies[1 - first_side]) || !is_dynamic(later.bodies[1 - side]) {
         return false;
     }
-    let plane = facing(first_side, manifolds[first.manifold as usize]);
+    let plane = facing(first_side, output.manifolds[first.manifold as usize]);
     let start = facing(side, later.start.0);
     let Some(touch) = plane.points().first() else { return false };
     let touch = plane.origin + touch.anchor.widen();

@@ -16,9 +16,7 @@
 //! of the distance, so the shapes cannot touch before it is 0.
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{
-    CachedAxis, KeptManifold, Manifold, ManifoldPoint, PosedShape, SatCounters, arm_of, collide_near,
-};
+use crate::collision::{CachedAxis, KeptManifold, Manifold, PosedShape, SatCounters, arm_of, collide_near};
 use crate::math::{
     Angle, Length, Rot, Step, Unit, Vec2, mul, round_shift_wide, saturate, saturate_wide, widen,
 };
@@ -32,8 +30,6 @@ const TOLERANCE: Step = Step::lit("0.001");
 /// The impact of two shapes on their paths within a tick.
 #[derive(Debug)]
 pub(super) enum Impact {
-    /// The shapes touch at the start of the tick, and approach.
-    AtStart,
     /// The shapes pass by each other. They are closest to each other at about this fraction of the tick.
     Miss { fraction: Unit },
     At {
@@ -54,10 +50,7 @@ impl Impact {
         bodies: [u32; 2],
         start: (Manifold, KeptManifold),
     ) -> PendingImpact {
-        let fraction = match *self {
-            Impact::AtStart => Unit::ZERO,
-            Impact::Miss { fraction } | Impact::At { fraction, .. } => fraction,
-        };
+        let (Impact::Miss { fraction } | Impact::At { fraction, .. }) = *self;
         let misses = matches!(self, Impact::Miss { .. });
         PendingImpact { manifold, contact, bodies, fraction, misses, start }
     }
@@ -92,20 +85,6 @@ impl SpeculativePair<'_> {
     pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
         self.closing.is_longer_than(self.margins.touching)
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
-    }
-
-    /// Whether the shapes touch at the start of the tick, and approach in the tick by more than the touching distance. A
-    /// kept manifold never does: such shapes move by at most this distance.
-    #[inline]
-    pub(super) fn hits_at_start(&self, motion: &MotionCache, manifold: &Manifold) -> bool {
-        let touching = self.margins.touching;
-        self.closing.is_longer_than(touching) && {
-            let closing_at = approach(motion.motion(self.a), motion.motion(self.b), manifold);
-            let hits = |point: &ManifoldPoint| {
-                point.separation <= touching && closing_at(point) > i64::from(touching.to_bits())
-            };
-            manifold.points().iter().any(hits)
-        }
     }
 
     /// The impact of the shapes on their unobstructed paths within the tick. `None` if `manifold`, that at the start of

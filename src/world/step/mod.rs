@@ -83,7 +83,7 @@ impl World {
         let output = contacts.output();
         solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
-        solver.prepare_contacts(&output.touching, &output.manifolds, &state.contacts);
+        solver.prepare_contacts(&output.touching, &output.manifolds, &state.contacts, &tuning);
         areas::apply_areas(state, scratch, &tuning);
         let can_solve = solver_work::spend(state, scratch, pairs_before);
         let Scratch { solver, .. } = scratch;

@@ -2,20 +2,21 @@
 
 use core::ops::Range;
 
-use super::contact_events::fast_approach;
 use super::first_impacts;
 use super::impact::Impact;
 use super::passing;
 use super::recycle::Recycling;
-use super::speculative::{Side, SpeculativePair};
+use super::speculative::{Side, SpeculativePair, approach};
 use crate::body::Handle;
 use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
-use crate::math::Vec2;
+use crate::math::{Fx, Length, Step, Vec2};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    AwakeSet, ClosingBound, Margins, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, Poses, Scratch,
+    AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, Passing, PendingHit,
+    Poses, PredictedMotion, Scratch,
 };
+use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
 /// Smallest number of contacts that a thread gets, except for the last thread.
@@ -46,7 +47,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
         0
     });
     cache.finish(&solver.threads);
-    first_impacts::withdraw_later_ones(&mut contacts, state, shapes.motion(), margins.touching, cache);
+    first_impacts::withdraw_later_ones(&mut contacts, state, shapes.poses(), margins.touching, cache);
     state.contacts = contacts;
 }
 
@@ -151,8 +152,7 @@ impl NarrowPhase<'_> {
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             let closing = ClosingBound::of(margins, shape_a, shape_b);
             if contact.count > 0 && contact.kept.can_be_kept() {
-                let count = contact.count;
-                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], contact, count);
+                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], contact.count);
                 if let Some(found) = recycling.recycle(contact) {
                     recycled.push(found);
                     near.add(index, ManifoldSource::Kept);
@@ -218,8 +218,6 @@ impl NarrowPhase<'_> {
             // Displacements of the bodies from the start of the tick to the time of the manifold. They are 0 unless
             // this is the time of impact.
             let mut moved_by = [Vec2::ZERO; 2];
-            // A contact between bodies that turn as one keeps no manifold.
-            let mut turns_as_one = false;
             if !is_kept {
                 keep_reachable(state, poses, &pair, contact, self.passing, manifold, sat);
                 if manifold.points().is_empty() {
@@ -227,9 +225,7 @@ impl NarrowPhase<'_> {
                     continue;
                 }
                 let impact = self.impact(&pair, contact.shapes, manifold, sat);
-                let count = manifold.count();
-                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], contact, count);
-                turns_as_one = recycling.turns_as_one && contact.presses();
+                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], manifold.count());
                 recycling.keep(contact, manifold);
                 if let Some(impact) = impact {
                     let bodies = [shape_a.body, shape_b.body];
@@ -265,13 +261,12 @@ impl NarrowPhase<'_> {
                 is_hit,
                 extras,
                 keeps_rows: is_kept && last.is_some() && !extras,
-                turns_as_one,
             });
         }
         touched
     }
 
-    /// The impact of the shapes of a pair, if they may leave their paths there.
+    /// The impact of the shapes of a pair, if its manifold at the start of the tick does not suffice.
     #[inline(always)]
     fn impact(
         &self,
@@ -281,7 +276,7 @@ impl NarrowPhase<'_> {
         counters: &mut SatCounters,
     ) -> Option<Impact> {
         if !pair.may_impact(manifold) {
-            return pair.hits_at_start(self.poses.motion(), manifold).then_some(Impact::AtStart);
+            return None;
         }
         let sides = [a, b].map(|slot| Side::of(self.state, self.poses, slot));
         if sides.iter().any(|side| self.is_held(side)) {
@@ -368,4 +363,35 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
         radius: poses.at(slot).outline.radius(),
     };
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
+}
+
+/// The hit event of a contact that approaches at `hit_speed` or more; `None` for a slower contact. The event is
+/// reported only if the solver then finds a contact impulse. `moved_by` has the displacements of the bodies from the
+/// start of the tick until the time of the manifold.
+fn fast_approach(
+    state: &State,
+    motion: &MotionCache,
+    index: u32,
+    contact: &Contact,
+    manifold: &Manifold,
+    moved_by: [Vec2<Length>; 2],
+) -> Option<PendingHit> {
+    let body_motion = |shape: u32, by: Vec2<Length>| {
+        let start = motion.motion(motion.shape(shape));
+        PredictedMotion { centre: start.centre + by.widen(), ..*start }
+    };
+    let (a, b) = contact.shapes;
+    let closing_at = approach(&body_motion(a, moved_by[0]), &body_motion(b, moved_by[1]), manifold);
+    let closings = manifold.points().iter().map(|point| (point, closing_at(point)));
+    let (point, closing) = closings.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let metres = Fx::from_bits(closing.saturating_mul(1 << (Fx::FRAC_NBITS - Step::FRAC_NBITS)));
+    let approach_speed = metres.saturating_mul_int(state.config.tick_rate.into());
+    if approach_speed < state.config.hit_speed {
+        return None;
+    }
+    let point = manifold.origin + point.anchor.widen();
+    let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
+    let normal = manifold.normal;
+    let event = HitEvent { shape_a, shape_b, point, normal, approach_speed, impulse: Fx::ZERO };
+    Some(PendingHit { contact: index, event })
 }

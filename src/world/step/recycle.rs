@@ -1,8 +1,5 @@
 //! Contact recycling: the movement up to which a contact keeps its manifold.
 
-#[cfg(test)]
-mod tests;
-
 use crate::body::{Body, BodyKind};
 use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
 use crate::math::{Length, Vec2};
@@ -16,8 +13,6 @@ pub(super) struct Recycling<'a> {
     extents: [Length; 2],
     /// Whether a round shape may roll: one of the bodies is not dynamic or turns.
     rolls: bool,
-    /// Whether the bodies turn as one.
-    pub(super) turns_as_one: bool,
     /// Change of a lever arm, in metres, up to which the contact keeps the arm.
     arm_tolerance: Length,
     /// Movement of the shapes since their manifold was computed, in metres, up to which the contact keeps the manifold.
@@ -35,18 +30,14 @@ impl<'a> Recycling<'a> {
     /// bodies that hardly turn the limits are not reduced, because plates on rollers are stable only if lever arms are
     /// kept.
     ///
-    /// Nothing is kept between bodies that turn as one, or on a kinematic body that turns, because lever arms that lag
-    /// behind give the wrong velocity at the contact: on a body that turns at 1 rad/s, a crate of 4 m x 2 m would creep
-    /// by 35 mm/s.
-    ///
-    /// `contact` has the points and arms of the last tick, `count` is the number of points of the manifold.
+    /// Nothing is kept on a kinematic body that turns, because lever arms that lag behind give the wrong velocity at
+    /// the contact: on a body that turns at 1 rad/s, a crate of 4 m x 2 m would creep by 35 mm/s.
     #[inline]
     pub(super) fn new(
         state: &'a State,
         margins: &Margins,
         closing: ClosingBound,
         shapes: [&'a ShapeMotion; 2],
-        contact: &Contact,
         count: u8,
     ) -> Self {
         let bodies = shapes.map(|shape| state.bodies.at(shape.body));
@@ -55,15 +46,12 @@ impl<'a> Recycling<'a> {
         let rolls = is_round && bodies.into_iter().any(|body| !body.is_dynamic() || body.is_turning());
         let is_rotor = |body: &Body| body.kind() == BodyKind::Kinematic && body.is_turning();
         let [a, b] = bodies;
-        let arms = [contact.kept.arm_a, contact.kept.arm_b];
-        let turns_as_one = a.turns_as_one_with(b, arms);
-        let arm_tolerance: Length = match turns_as_one || is_rotor(a) || is_rotor(b) {
+        let arm_tolerance: Length = match a.turns_with(b) || is_rotor(a) || is_rotor(b) {
             true => Length::ZERO,
             false => extents[0].min(extents[1]) >> 6,
         };
         let most = if rolls { arm_tolerance >> 8 } else { arm_tolerance.min(margins.kept) };
-        let movement_max = closing.rest_of(most);
-        Recycling { bodies, shapes, extents, rolls, turns_as_one, arm_tolerance, movement_max }
+        Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }
 
     /// The kept manifold at the current poses. `None` if the shapes have to be collided.

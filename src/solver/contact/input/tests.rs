@@ -31,13 +31,13 @@ fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         is_hit: false,
         extras: false,
         keeps_rows: false,
-        turns_as_one: false,
     };
     let source = ContactSource {
         pairs: &[pair],
         manifolds: &[Manifold::new(Vec2::Y)],
         contacts: &[Contact::new((0, 1))],
         list: &list,
+        mean_time: Fx::ZERO,
     };
     let mut input = Input::NONE;
     source.gather(&pair, &[Prospect::default(); 3], &mut WarmStarts::default(), &mut input);
