@@ -56,7 +56,7 @@ pub mod world;
 
 /// Version of the engine's arithmetic. It increases when the same inputs may give another state. The engine rejects
 /// snapshots of another version, and cannot play replays of another version.
-pub const SEMANTICS: u32 = 26;
+pub const SEMANTICS: u32 = 25;
 
 /// Version of this crate.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

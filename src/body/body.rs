@@ -198,7 +198,7 @@ impl Body {
         self.mass.gyration
     }
 
-    /// Kinetic energy in J, at most [`Fx::MAX`]. 100 t reach it at 207 m/s.
+    /// Kinetic energy in J.
     #[must_use]
     pub fn kinetic_energy(&self) -> Fx {
         let v = self.velocity();
@@ -361,20 +361,21 @@ impl Body {
     }
 
     /// Changes of `v` and `u` in a sub-step of `1 / rate` s by the applied force and torque: `dv = F / (m rate)`,
-    /// `du = torque / (m k rate)`. In raw units of [`Speed`]; they may exceed the range of that format.
-    pub(crate) fn acceleration_step(&self, rate: u32) -> [i64; 3] {
+    /// `du = torque / (m k rate)`. `dv` is in raw units of [`Speed`] and may exceed the range of that format.
+    pub(crate) fn acceleration_step(&self, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force, self.torque, rate)
     }
 
     /// [`Self::acceleration_step`] with an additional force in N and an additional torque in N m.
-    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> [i64; 3] {
+    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> ([i64; 2], Speed) {
         self.step_by(self.force + force, self.torque.saturating_add(torque), rate)
     }
 
-    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> [i64; 3] {
+    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> ([i64; 2], Speed) {
         let is_turned = torque != Fx::ZERO && self.turns();
         let around = if is_turned { divide(torque, self.mass.gyration) } else { Fx::ZERO };
-        [force.x, force.y, around].map(|force| over_mass(force, self.mass.mass, rate))
+        let [x, y, du] = [force.x, force.y, around].map(|force| over_mass(force, self.mass.mass, rate));
+        ([x, y], Speed::from_bits(saturate(du)))
     }
 }
 

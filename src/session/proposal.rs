@@ -311,7 +311,7 @@ impl Session {
         let mut joins: Vec<Join> = Vec::new();
         let mut free = self.free_after(leaves);
         for (id, want) in self.seat_wants(self.view.number) {
-            // Of several processes with one key, one gets seats.
+            // One process gets the seats, even if several use the same key.
             if joins.iter().any(|join| join.key == want.key) {
                 continue;
             }

@@ -8,8 +8,7 @@
     reason = "d is 1 or more, so that 1 / d is at most 1"
 )]
 pub(super) fn reciprocal(d: i64) -> i32 {
-    // The branch saves the division in lanes without a constraint.
-    if d <= 1 << 30 { 1 << 30 } else { ((1u64 << 60) / d as u64) as i32 }
+    ((1u64 << 60) / d.max(1 << 30) as u64) as i32
 }
 
 /// [`super::Lanes::inverse`] for one lane.

@@ -130,13 +130,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
         let [xx, xy, yy] =
             [Self::to_array(entries[0]), Self::to_array(entries[1]), Self::to_array(entries[2])];
-        let one = Ints([1 << 30; N]);
-        let mut g = [one, Ints::ZERO, one];
+        let mut g = [Ints::ZERO; 3];
         for lane in 0..N {
-            // Lanes without a constraint are left out, because a division takes long.
-            if xx[lane] | xy[lane] | yy[lane] == 0 {
-                continue;
-            }
             [g[0].0[lane], g[1].0[lane], g[2].0[lane]] = division::inverse([xx[lane], xy[lane], yy[lane]]);
         }
         [Self::load(&g[0]), Self::load(&g[1]), Self::load(&g[2])]

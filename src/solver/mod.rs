@@ -92,8 +92,6 @@ impl Solver {
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
         self.moving.clear();
-        // The first group is filled up with the ground, so that vector instructions integrate this group as well.
-        self.moving.resize(slots.len().next_multiple_of(WIDTH) - slots.len(), MovingBody::STEADY);
         // Bodies are large, so one loop reads each body for both lists.
         for &slot in slots {
             let body = bodies.at(slot);

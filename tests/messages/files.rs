@@ -24,7 +24,7 @@ fn snapshots() {
     says([
         (SnapshotError::NotASnapshot, "not the bytes of a world"),
         (SnapshotError::Format { found: 1 }, "format version 1, this engine reads 4"),
-        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 26"),
+        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 25"),
         (SnapshotError::Length { announced: 500, found: 499 }, "499 bytes where 500 are announced"),
         (SnapshotError::Hash, "the hash does not match the bytes"),
         (
@@ -94,7 +94,7 @@ fn comparisons() {
         ),
         (
             EvidenceError::World(SnapshotError::Semantics { found: 2 }),
-            "a snapshot of another version: made with semantics 2, this engine has 26",
+            "a snapshot of another version: made with semantics 2, this engine has 25",
         ),
         (
             EvidenceError::World(SnapshotError::Format { found: 1 }),

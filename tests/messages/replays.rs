@@ -201,7 +201,7 @@ fn keyframes() {
     says([
         (KeyframesError::NotKeyframes, "this is not a file of keyframes"),
         (KeyframesError::Format { found: 9 }, "format version 9, this engine reads 1"),
-        (KeyframesError::Semantics { found: 2 }, "made with engine semantics 2, this program has 26"),
+        (KeyframesError::Semantics { found: 2 }, "made with engine semantics 2, this program has 25"),
         (
             KeyframesError::Rules { name: "shove".into(), version: 8 },
             "made with the rules \"shove\" version 8, which are not those of this program",

@@ -3,7 +3,7 @@
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 
 use lockstep2d::body::{Body, JointId};
-use lockstep2d::math::{Angle, Fx};
+use lockstep2d::math::Fx;
 use lockstep2d::solver::{Distance, JointKind, JointLimit, Motor, Prismatic, Pull, Wheel};
 
 use crate::assembly::Assembly;
@@ -91,8 +91,7 @@ impl Assembly {
                 let pull = |pull: &Option<Pull>, mobility: f64, x: f64| {
                     pull.map_or(0.0, |pull| limited(pull.soft.hertz, mobility, x, float(pull.max)))
                 };
-                let angle = float(Angle::from_radians(angle).to_radians()).abs();
-                let turn = pull(angular_spring, it[0] + it[1], angle);
+                let turn = pull(angular_spring, it[0] + it[1], float(angle).abs());
                 turn + pull(linear_spring, im[0] + im[1], gap.0.hypot(gap.1))
             }
             _ => 0.0,

@@ -1,10 +1,8 @@
 //! Free fall is semi-implicit Euler, bit for bit: `v' = v + g h`, `x' = x + h v'` in each sub-step of `h` seconds.
-//! Damping and drag are implicit: `v' = (v + h (a + c u)) / (1 + h c)`.
 
-use lockstep2d::body::{Area, BodyDef, BodyId, Polygon, ShapeDef};
+use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Shift, Speed, Vec2, div_round, narrow};
-use lockstep2d::solver::SolverSettings;
 use lockstep2d::world::{Config, World};
 
 use crate::{open, run};
@@ -91,24 +89,4 @@ fn explicit_euler_gains_energy_and_semi_implicit_does_not() {
         "expected the energy of explicit Euler to be (1 + 1/3600)^6000 = e^(5/3) times 0.5 J"
     );
     assert!((energy(semi.0, semi.1) - fx!(0.5)).abs() < fx!(0.01));
-}
-
-/// A medium with the largest drag takes a body along. `h c u` is far above the largest velocity.
-#[test]
-fn a_strong_flow_with_strong_drag_reaches_the_speed_of_the_flow() {
-    for (sub_steps, flow) in [(1, fx!(100)), (4, fx!(300))] {
-        let solver = SolverSettings { sub_steps, ..SolverSettings::default() };
-        let mut world =
-            World::new(Config { solver, gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
-        let square = |half| ShapeDef::new(Polygon::square(half).expect("valid"));
-        let wind = square(fx!(100)).area(Area::new().drag(fx!(1000), fx!(1000)).flow((flow, fx!(0))));
-        world.spawn(&BodyDef::fixed(), &[wind]).expect("valid");
-        let leaf = BodyDef::dynamic().position((fx!(-90), fx!(0)));
-        let leaf = world.spawn(&leaf, &[square(fx!(0.5))]).expect("valid");
-        // In the first tick the leaf moves by at most 5 m.
-        (0..6).for_each(|_| world.step());
-        let speed = world.body(leaf).expect("there").velocity().x;
-        assert!((speed - flow).abs() < fx!(0.01), "{speed} m/s, expected {flow}");
-        assert_eq!(world.faults(), 0);
-    }
 }

@@ -101,29 +101,6 @@ fn a_rope_is_slack_and_then_taut() {
     close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
 }
 
-/// The anchors pass each other head-on at 7 m/s, and swap sides. A slack rope exerts no force, whether the rope is
-/// alone or in a block of joints.
-#[test]
-fn anchors_pass_each_other_on_a_slack_rope() {
-    for (ground, in_block) in [(Ground::Fixed, false), (Ground::Free(fx!(2)), false), (Ground::Fixed, true)] {
-        let mut bench = Bench::new(ground, fx!(0), Vec2::new(fx!(1), fx!(0)), fx!(0));
-        let joint = bench.join(JointDef::new(bench.a, bench.b, Distance::rope(fx!(3))));
-        if in_block {
-            bench.join(JointDef::new(bench.a, bench.b, Distance::rope(fx!(4))));
-        }
-        let velocity = Vec2::new(fx!(-7), fx!(0));
-        bench.world.set_velocity(bench.b, velocity, fx!(0)).expect("valid");
-        let (b, what) = (bench.b, format!("{ground:?}, in a block: {in_block}"));
-        bench.run(18, |tick, world| {
-            let body = world.body(b).expect("there");
-            assert_eq!(body.velocity(), velocity, "{what}, tick {tick}");
-            let (force, _) = world.joint_force(joint).expect("there");
-            assert_eq!(force, Vec2::ZERO, "{what}, tick {tick}");
-        });
-        close(bench.world.body(b).expect("there").position().x, fx!(-1.1), fx!(0.001), &what);
-    }
-}
-
 /// A motor of up to 10^9 N m turns a hinge against its limit, where the hinge stays. If motor and limit acted against
 /// each other, their impulses would grow until the hinge turned through the limit, by up to 266 rad.
 #[test]

@@ -164,23 +164,3 @@ fn motors_without_a_limit_move_any_mass_at_once() {
         close(speed.expect("there"), fx!(3), fx!(0.03), &format!("{kind:?}"));
     }
 }
-
-/// The torque of an angular spring depends on the angle within a turn, as that of Box2D. A box that was hit turns
-/// several turns against 1 N m, and then settles at the nearest angle instead of turning back.
-#[test]
-fn an_angular_spring_does_not_count_turns() {
-    let mut bench = Bench::with_mass(Ground::Fixed, fx!(0), (fx!(1), fx!(0.408)), Vec2::ZERO, fx!(0));
-    let kind = Motor::new().angular_spring(fx!(2), fx!(1), fx!(1));
-    let joint = bench.join(JointDef::new(bench.a, bench.b, kind));
-    bench.world.set_velocity(bench.b, Vec2::ZERO, fx!(30)).expect("there");
-    // 1/6 kg m² lose 6 rad/s in a second. Damping exceeds the spring, whose largest torque is 83 N m, above 20 rad/s.
-    bench.run(60, |_, _| {});
-    let speed = bench.world.joint_angular_velocity(joint).expect("there");
-    close(speed, fx!(24), fx!(0.1), "rad/s after 1 s");
-    bench.run(540, |_, _| {});
-    let speed = bench.world.joint_angular_velocity(joint).expect("there");
-    close(speed, fx!(0), fx!(0.01), "rad/s after 10 s");
-    assert!(bench.world.joint_angle(joint).expect("there") > fx!(60));
-    let angle = bench.world.body(bench.b).expect("there").angle();
-    close(angle.to_radians(), fx!(0), fx!(0.01), "rad after 10 s");
-}

@@ -67,25 +67,3 @@ fn a_character_that_lands_on_an_edge_does_not_fall_twice() {
     let fallen: Fx = start.y - state.position.y;
     assert!(fallen > fx!(0.14) && fallen <= fx!(0.3), "{fallen} m");
 }
-
-/// A platform that is sent back to its start leaves a character where it is, also if the character jumps in that tick.
-#[test]
-fn a_platform_that_is_placed_elsewhere_leaves_its_rider() {
-    for jumps in [false, true] {
-        let mut world = world(60);
-        let plate = ShapeDef::new(Polygon::rectangle(fx!(3), fx!(0.5)).expect("valid"));
-        let lift = BodyDef::kinematic().position((fx!(50), fx!(-0.5)));
-        let lift = world.spawn(&lift, &[plate]).expect("valid");
-        let mover = Mover::new(shapes()[0].1).expect("valid");
-        let mut state = MoverState::at(at(fx!(50), fx!(0.7001)));
-        world.step();
-        state.velocity.y = -fall(60);
-        state = world.move_character(&mover, &state, QueryFilter::default()).state;
-        assert!(state.is_on_ground());
-        world.set_transform(lift, (fx!(0), fx!(-0.5)), Angle::ZERO).expect("there");
-        state.velocity.y = if jumps { fx!(5) } else { -fall(60) };
-        let state = world.move_character(&mover, &state, QueryFilter::default()).state;
-        assert!((state.position.x - fx!(50)).abs() < fx!(0.001) && !state.is_on_ground(), "{state:?}");
-        assert!(state.velocity.length() < fx!(5.1), "{state:?}");
-    }
-}

@@ -20,9 +20,7 @@ use lockstep2d::fx;
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::replay::{Limits, Recording, verify};
-use lockstep2d::solver::{
-    Distance, JointDef, JointKind, Prismatic, Revolute, Threshold, ThresholdAction, Weld,
-};
+use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction, Weld};
 use lockstep2d::world::{Command, Config, Explosion};
 use lockstep2d_tests::sweep;
 
@@ -91,38 +89,6 @@ fn motors_in_blocks_with_many_iterations() {
     };
     let wrong = too_expensive("motors in blocks, 16 iterations", 64, case);
     assert!(wrong.is_none(), "{wrong:#?}");
-}
-
-/// A net of sliders or of ropes, eight bodies wide, is one block with thousands of rows. The motors of the sliders have
-/// very different strengths.
-#[test]
-fn nets_in_blocks() {
-    let net = |count: i64, kinds: [JointKind; 8]| -> Case<'static> {
-        let bodies = u32::try_from(count).expect("a number");
-        let places = (0..count).map(|at| (Fx::from_num(at % 8) * 2, Fx::from_num(at / 8) * 2));
-        let mut commands = vec![each(BodyDef::dynamic(), square(fx!(0.5)), places)];
-        for (power, kind) in (0..8u32).zip(kinds) {
-            let joint = JointDef::new(body(0), body(1), kind);
-            let across = (0..bodies).filter(|at| at % 8 < 7).map(|at| (at, at + 1));
-            let along = (8..bodies).map(|at| (at - 8, at));
-            let own = across.chain(along).filter(|(a, b)| (a * 5 + b * 3) % 8 == power);
-            let ends = own.map(|(a, b)| (body(a), body(b))).collect();
-            commands.push(Command::AddJointEach { joint, ends });
-        }
-        (setup(commands, still()), 3, Box::new(|_| Vec::new()))
-    };
-    let sliders = [0, 1, 2, 3, 4, 5, 6, 7u32].map(|power| {
-        Prismatic::new().motor(fx!(50), fx!(0.001) * 4i64.pow(power)).limit(fx!(-1), fx!(1)).into()
-    });
-    let ropes = [0, 1, 2, 3, 4, 5, 6, 7u32].map(|power| {
-        let spring = Distance::rope(fx!(2)).spring(fx!(5), fx!(0.1), Fx::from_num(power + 1) / 2);
-        spring.spring_force(-fx!(0.001) * 4i64.pow(power), fx!(0.001) * 4i64.pow(power)).into()
-    });
-    let wrong = [
-        too_expensive("nets of sliders", 256, |count| net(count, sliders)),
-        too_expensive("nets of ropes", 256, |count| net(count, ropes)),
-    ];
-    assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
 /// Elastic shapes that hit at the same time are solved against each other in many passes.

@@ -245,23 +245,3 @@ fn a_body_that_is_joined_to_a_moving_anchor_does_not_sleep() {
         assert!(gap.abs() < fx!(0.05), "{gap}");
     }
 }
-
-/// A game may write all settings in every tick.
-#[test]
-fn edits_that_change_nothing_wake_no_body() {
-    let (mut world, _) = world_with_floor();
-    let body = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
-    run(&mut world, 120);
-    assert!(is_asleep(&world, body));
-    let shape = shape_of(&world, body);
-    let def = *world.shape(shape).expect("there").def();
-    let settings = *world.body(body).expect("there").settings();
-    world.set_shape(shape, &def).expect("valid");
-    world.set_filter(shape, def.filter).expect("valid");
-    world.set_material(shape, def.material).expect("valid");
-    world.set_body(body, &settings).expect("valid");
-    world.set_gravity(world.config().gravity).expect("valid");
-    assert!(is_asleep(&world, body));
-    world.set_material(shape, Material { friction: fx!(0.1), ..def.material }).expect("valid");
-    assert!(!is_asleep(&world, body));
-}

@@ -83,9 +83,7 @@ fn pushing_wakes() {
     wakes(|world, _, [a, ..]| world.set_transform(a, Vec2::new(fx!(9), fx!(9)), Angle::ZERO).expect("valid"));
     wakes(|world, _, [a, ..]| world.wake(a).expect("valid"));
     wakes(|world, _, _| world.set_gravity(up).expect("valid"));
-    wakes(|world, _, [.., c]| {
-        world.set_body(c, &BodySettings { gravity_scale: fx!(2), ..BodySettings::default() }).expect("valid")
-    });
+    wakes(|world, _, [.., c]| world.set_body(c, &BodySettings::default()).expect("valid"));
 }
 
 #[test]

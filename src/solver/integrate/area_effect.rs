@@ -10,7 +10,7 @@ use super::super::limits::units;
 use super::super::settings::Tuning;
 use super::MovingBody;
 use crate::body::{Body, BodySettings};
-use crate::math::{Fx, Vec2, fx_mul};
+use crate::math::{Fx, Vec2, fx_mul, narrow};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AreaEffect {
@@ -32,15 +32,17 @@ impl MovingBody {
     pub(in crate::solver) fn in_areas(index: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) -> Self {
         let AreaEffect { acceleration, angular_acceleration, force, torque, linear_drag, angular_drag } =
             *effect;
-        let [x, y, turn] = body.step_with(force, torque, tuning.rate);
+        let ([x, y], mut spin_step) = body.step_with(force, torque, tuning.rate);
         let per_step = |acceleration: Fx| acceleration / i64::from(tuning.rate);
         let with = |step: i64, acceleration: Fx| step.saturating_add(units(per_step(acceleration)));
-        let around =
-            if body.turns() { fx_mul(angular_acceleration, body.radius_of_gyration()) } else { Fx::ZERO };
-        let step = [with(x, acceleration.x), with(y, acceleration.y), with(turn, around)];
+        let step = [with(x, acceleration.x), with(y, acceleration.y)];
+        if body.turns() {
+            let turn = per_step(fx_mul(angular_acceleration, body.radius_of_gyration()));
+            spin_step = spin_step.saturating_add(narrow(turn));
+        }
         let mut settings: BodySettings = *body.settings();
         settings.linear_damping = settings.linear_damping.saturating_add(linear_drag);
         settings.angular_damping = settings.angular_damping.saturating_add(angular_drag);
-        MovingBody::dynamic(index, step, &settings, tuning)
+        MovingBody::dynamic(index, step, spin_step, &settings, tuning)
     }
 }

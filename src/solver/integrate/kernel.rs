@@ -8,7 +8,7 @@ use super::super::pair::{UNIT, beyond};
 use super::sub_step::SubStep;
 use super::{MovingBody, SHIFT_MAX};
 use crate::math::{Speed, Unit};
-use crate::simd::{GROUND, Kernel, Lanes, VelocityW};
+use crate::simd::{Kernel, Lanes, VelocityW};
 
 pub(super) struct Velocities<'a> {
     pub(super) moving: &'a [MovingBody],
@@ -60,8 +60,7 @@ fn one_by_one(
     bodies: &[Cell<SolverBody>],
     mut integrate: impl FnMut(&MovingBody, &mut SolverBody),
 ) {
-    // Other threads read the ground at the same time.
-    for moving in moving.iter().filter(|moving| moving.index != GROUND) {
+    for moving in moving {
         let place = &bodies[moving.index as usize];
         let mut body = place.get();
         integrate(moving, &mut body);
@@ -82,8 +81,8 @@ fn on_axis(speed_max: Speed) -> i32 {
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
 }
 
-/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body has a locked axis or may
-/// exceed the speed limit.
+/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a locked
+/// axis or may exceed the speed limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],
@@ -93,37 +92,37 @@ fn velocities<L: Lanes<N>, const N: usize>(
     let [step_x, step_y, step_turn, _] = L::transposed(moving.each_ref().map(|moving| &moving.step));
     let [linear, angular, extras, _] = L::transposed(moving.each_ref().map(|moving| &moving.factors));
     let at = moving.each_ref().map(|moving| moving.index);
-    let mut velocities = L::velocities(bodies, &at);
-    if L::any(L::greater(L::splat(Unit::ONE.to_bits()), L::min(linear, angular))) {
-        velocities.x = towards_rest::<L, N>(velocities.x, linear);
-        velocities.y = towards_rest::<L, N>(velocities.y, linear);
-        velocities.turn = towards_rest::<L, N>(velocities.turn, angular);
-    }
-    let x = L::add_saturating(velocities.x, step_x);
-    let y = L::add_saturating(velocities.y, step_y);
-    let turn = L::add_saturating(velocities.turn, step_turn);
+    let VelocityW { x, y, turn } = L::velocities(bodies, &at);
+    let [x, y] = [L::add_saturating(x, step_x), L::add_saturating(y, step_y)];
+    let turn = L::add_saturating(turn, step_turn);
     let (on_axis, turning) = (L::splat(limits.on_axis), L::splat(limits.turning));
     let fast = L::either(beyond::<L, N>(x, on_axis), beyond::<L, N>(y, on_axis));
     let unusual = L::either(L::negative(extras), L::either(fast, beyond::<L, N>(turn, turning)));
     if L::any(unusual) {
         return false;
     }
-    L::set_velocities(bodies, &at, VelocityW { x, y, turn });
+    let mut velocities = VelocityW { x, y, turn };
+    if L::any(L::greater(L::splat(Unit::ONE.to_bits()), L::min(linear, angular))) {
+        velocities.x = towards_rest::<L, N>(x, linear);
+        velocities.y = towards_rest::<L, N>(y, linear);
+        velocities.turn = towards_rest::<L, N>(turn, angular);
+    }
+    L::set_velocities(bodies, &at, velocities);
     true
 }
 
-/// A damped speed, rounded towards 0.
+/// A damped speed, rounded towards 0. `speed` must be above the minimum of its format.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
-    let reversed = L::sub_saturating(L::splat(0), speed);
+    let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
     // Subtracting half a unit of the result turns rounding to nearest into rounding down.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }
 
-/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if a body has a locked axis or would
-/// move too far in the tick.
+/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a
+/// locked axis or would move too far in the tick.
 #[inline(always)]
 fn displacements<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],

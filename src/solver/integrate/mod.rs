@@ -1,13 +1,7 @@
-//! Semi-implicit Euler: velocities first, then displacements from the new velocities. Damping is implicit, so it is
-//! stable for any decay rate `c`. With the length `h` of a sub-step:
+//! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! ```text
-//! v' = (v + h F / m) / (1 + h c)
-//! x' = x + h v'
-//! ```
-//!
-//! Vector instructions integrate several bodies at a time (`kernel`) if all of them have no locked axis and certainly
-//! stay within the limits. Other bodies are integrated one by one.
+//! Vector instructions integrate several bodies at a time (`kernel`) if all of them are dynamic, have no locked axis
+//! and certainly stay within the limits. Other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -20,10 +14,8 @@ use super::context::StepContext;
 use super::limits::{Faults, STEP_MAX, shortened, units};
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
-use crate::math::{
-    Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, round_shift_wide, saturate, saturate_wide,
-};
-use crate::simd::{GROUND, Quad};
+use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
+use crate::simd::Quad;
 pub(crate) use area_effect::AreaEffect;
 use sub_step::SubStep;
 
@@ -33,11 +25,10 @@ const SHIFT_MAX: Shift = Shift::lit("15.999");
 /// A body that moves, with its velocity changes in a sub-step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBody {
-    /// Changes of the velocity and of the spin in a sub-step by gravity, applied forces and torques, and areas, times
-    /// the damping factors.
+    /// Changes of the velocity and of the spin in a sub-step by gravity, applied forces and torques, and areas.
     step: Quad,
-    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. The third number is negative if the body has a
-    /// locked axis.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: an implicit step, stable for any damping rate
+    /// `c`. The third number is negative if the body is not dynamic or has a locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,
@@ -45,47 +36,57 @@ pub(super) struct MovingBody {
 }
 
 impl MovingBody {
-    /// A body whose velocity does not change: a kinematic body, or the ground in a lane without a body.
-    pub(super) const STEADY: Self = MovingBody {
-        step: Quad([0; 4]),
-        factors: Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), 0, 0]),
-        index: GROUND,
-        dynamic: false,
-        locks: MotionLocks { x: false, y: false, rotation: false },
-    };
-
     pub(super) fn prepare(index: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
         match body.kind() {
             BodyKind::Fixed => None,
-            BodyKind::Kinematic => Some(MovingBody { index, ..Self::STEADY }),
+            BodyKind::Kinematic => {
+                let factors = Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), -1, 0]);
+                Some(MovingBody {
+                    step: Quad::default(),
+                    factors,
+                    index,
+                    dynamic: false,
+                    locks: MotionLocks::default(),
+                })
+            }
             BodyKind::Dynamic if body.has_mass() => {
-                Some(Self::dynamic(index, body.acceleration_step(tuning.rate), &body.settings, tuning))
+                let (force_step, spin_step) = body.acceleration_step(tuning.rate);
+                Some(Self::dynamic(index, force_step, spin_step, &body.settings, tuning))
             }
             // Gravity is a force, and forces do not move a body without mass.
             BodyKind::Dynamic => {
                 let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
-                Some(Self::dynamic(index, [0; 3], &settings, tuning))
+                Some(Self::dynamic(index, [0; 2], Speed::ZERO, &settings, tuning))
             }
         }
     }
 
-    /// `force_step` is the velocity change, along x and y and of the spin, in units of [`Speed`].
     #[inline(always)]
-    fn dynamic(index: u32, force_step: [i64; 3], settings: &BodySettings, tuning: &Tuning) -> Self {
+    fn dynamic(
+        index: u32,
+        force_step: [i64; 2],
+        spin_step: Speed,
+        settings: &BodySettings,
+        tuning: &Tuning,
+    ) -> Self {
         let BodySettings { linear_damping, angular_damping, gravity_scale, locks, .. } = *settings;
         let with_gravity = |force: i64, step: Fx| {
             let step = if gravity_scale == Fx::ONE { step } else { fx_mul(step, gravity_scale) };
             force.saturating_add(units(step))
         };
-        let [linear, angular] = [linear_damping, angular_damping].map(|c| damping_factor(c, tuning.rate));
-        let [x, y, turn] = force_step;
+        let [x, y] = force_step;
         let step = [with_gravity(x, tuning.gravity_step.x), with_gravity(y, tuning.gravity_step.y)];
-        let step = shortened(step.map(|part| damped(part, linear)), STEP_MAX, &mut 0);
-        let turn = Speed::from_bits(saturate(damped(turn, angular)));
+        let most = u64::from(STEP_MAX.to_bits().unsigned_abs());
+        let step = if step[0].unsigned_abs().max(step[1].unsigned_abs()) > most {
+            shortened_step(step, linear_damping, tuning.rate)
+        } else {
+            shortened(step, STEP_MAX, &mut 0)
+        };
+        let factor = |damping| damping_factor(damping, tuning.rate).to_bits();
         let is_held = i32::from(locks.x || locks.y);
         MovingBody {
-            step: Quad([step.x.to_bits(), step.y.to_bits(), turn.to_bits(), 0]),
-            factors: Quad([linear.to_bits(), angular.to_bits(), -is_held, 0]),
+            step: Quad([step.x.to_bits(), step.y.to_bits(), spin_step.to_bits(), 0]),
+            factors: Quad([factor(linear_damping), factor(angular_damping), -is_held, 0]),
             index,
             dynamic: true,
             locks,
@@ -96,20 +97,22 @@ impl MovingBody {
         self.index
     }
 
-    /// Whether the body has a locked axis.
+    /// Whether the body is not dynamic or has a locked axis.
     #[inline(always)]
     pub(super) fn has_extras(&self) -> bool {
         let Quad([_, _, extras, _]) = self.factors;
         extras < 0
     }
 
-    /// The new velocity, within the speed limit.
+    /// `v' = (v + h F / m) / (1 + h c)`, within the speed limit.
     fn integrate_velocity(&self, body: &mut SolverBody, speed_max: Speed) {
         if !self.dynamic {
             return;
         }
         let [x, y, turn, _] = self.step.0.map(Speed::from_bits);
         let [linear_factor, angular_factor, ..] = self.factors.0.map(Unit::from_bits);
+        body.velocity += Vec2::new(x, y);
+        body.spin = body.spin.saturating_add(turn);
         if linear_factor != Unit::ONE {
             body.velocity = Vec2::new(
                 towards_rest(body.velocity.x, linear_factor),
@@ -119,8 +122,6 @@ impl MovingBody {
         if angular_factor != Unit::ONE {
             body.spin = towards_rest(body.spin, angular_factor);
         }
-        body.velocity += Vec2::new(x, y);
-        body.spin = body.spin.saturating_add(turn);
         self.hold_locked_axes(body);
         limit_speed(&mut body.velocity, speed_max);
         body.spin = body.spin.clamp(-speed_max, speed_max);
@@ -137,7 +138,7 @@ impl MovingBody {
         }
     }
 
-    /// The new displacement in the tick.
+    /// `x' = x + h v'`.
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
@@ -166,19 +167,19 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// A damped speed, rounded towards 0, so that a body does not creep for ever.
-fn towards_rest(speed: Speed, factor: Unit) -> Speed {
-    // The lanes of the kernel cannot negate the minimum.
-    let product = i64::from(speed.max(-Speed::MAX).to_bits()) * i64::from(factor.to_bits());
-    Speed::from_bits(saturate(product / (1 << 30)))
+/// Shortens a velocity change so that 512 m/s of it remain after damping. No speed limit exceeds 512 m/s, so the
+/// shortening matters only if the force reverses the velocity of the body: the final velocity is then lower than it
+/// would be without the shortening.
+#[cold]
+fn shortened_step(step: [i64; 2], damping: Fx, rate: u32) -> Vec2<Speed> {
+    let most = Fx::from(STEP_MAX).saturating_add((damping / i64::from(rate)).saturating_mul_int(512));
+    shortened(step, narrow(most), &mut 0)
 }
 
-/// A velocity change in units of [`Speed`], multiplied by a damping factor.
-fn damped(step: i64, factor: Unit) -> i64 {
-    if factor == Unit::ONE {
-        return step;
-    }
-    saturate_wide(round_shift_wide(i128::from(step) * i128::from(factor.to_bits()), Unit::FRAC_NBITS))
+/// A damped speed, rounded towards 0, so that a body does not creep for ever.
+fn towards_rest(speed: Speed, factor: Unit) -> Speed {
+    let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
+    Speed::from_bits(saturate(product / (1 << 30)))
 }
 
 fn damping_factor(damping: Fx, rate: u32) -> Unit {

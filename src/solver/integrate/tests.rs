@@ -15,22 +15,20 @@ fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
 /// A body that is usually dynamic and without locked axes.
 fn random_mover(index: u32, rng: &mut Rng) -> MovingBody {
     let one_in = |rng: &mut Rng, count| rng.below(count) == 0;
-    if one_in(rng, 40) {
-        return MovingBody { index, ..MovingBody::STEADY };
-    }
     let step = [0; 3].map(|_| random_speed(rng, fx!(1)).to_bits());
     let mut factor = || match rng.below(4) {
         0 => rng.next_u32() >> 2,
         _ => 1 << 30,
     };
     let factors = [factor(), factor()].map(|factor| i32::try_from(factor).expect("at most 1"));
+    let dynamic = !one_in(rng, 40);
     let locks = MotionLocks { x: one_in(rng, 40), y: one_in(rng, 40), rotation: false };
-    let extras = -i32::from(locks.x || locks.y);
+    let extras = -i32::from(!dynamic || locks.x || locks.y);
     MovingBody {
         step: Quad([step[0], step[1], step[2], 0]),
         factors: Quad([factors[0], factors[1], extras, 0]),
         index,
-        dynamic: true,
+        dynamic,
         locks,
     }
 }

@@ -72,7 +72,7 @@ enum Entry {
 }
 
 /// The rows on the angle of a hinge; `None` for other joints.
-pub(super) fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
+fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
     match kind {
         JointKind::Revolute(kind) => Some(kind.angle_parts()),
         JointKind::Weld(kind) => kind.angle_parts(),

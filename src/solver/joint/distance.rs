@@ -103,30 +103,12 @@ impl Distance {
         check_strength("largest spring force in N", upper)
     }
 
-    /// Whether the length may fall below its range. A length is never negative, so a lower limit of 0 needs no row. As
-    /// a limit is approached at most at the speed that reaches it within a sub-step, such a row would stop anchors that
-    /// pass each other on a slack rope.
-    pub(super) fn has_lower_limit(&self) -> bool {
-        self.limit.is_some_and(|limit| limit.lower > Fx::ZERO)
-    }
-
-    /// Number of the joint's rows, without that of the motor.
-    pub(super) fn holding_rows(&self) -> u32 {
-        [self.rod.is_some(), self.spring.is_some(), self.limit.is_some(), self.has_lower_limit()]
-            .map(u32::from)
-            .iter()
-            .sum()
-    }
-
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         let force = self.spring_force.unwrap_or(JointLimit { lower: Fx::MIN, upper: Fx::MAX });
         parts.spring_within(Direction::Apart, self.spring, force);
         let held = self.rod.map(|length| JointLimit { lower: length, upper: length });
         parts.drive_within(Direction::Apart, self.motor, held.or(self.limit));
-        match self.limit {
-            Some(limit) if !self.has_lower_limit() => parts.upper(Direction::Apart, limit.upper),
-            limit => parts.limit(Direction::Apart, limit),
-        }
+        parts.limit(Direction::Apart, self.limit);
         if let Some(length) = self.rod {
             parts.hold(slot::HOLD, Direction::Apart, length);
         }

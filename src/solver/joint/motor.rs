@@ -46,7 +46,7 @@ pub struct Motor {
     /// Pulls the anchors onto each other, with limited force in N and isotropic stiffness ([`Soft`]). The damping also
     /// acts perpendicular to the spring.
     pub linear_spring: Option<Pull>,
-    /// Rotates the frames towards the same angle the shorter way round, with limited torque in N m.
+    /// Rotates the frames towards the same angle, with limited torque in N m.
     pub angular_spring: Option<Pull>,
 }
 
@@ -153,7 +153,7 @@ impl Motor {
             // `Fx::MIN` and `Fx::MAX` stand for no bound.
             let lower = if max == Fx::MAX { Fx::MIN } else { -max };
             let range = JointLimit { lower, upper: max };
-            parts.spring_within(Direction::AngleWithinTurn, Some(soft.towards(Fx::ZERO)), range);
+            parts.spring_within(Direction::Angle, Some(soft.towards(Fx::ZERO)), range);
         }
         parts.drive(Direction::Angle, self.angular);
         if let Some(Pull { soft, max }) = self.linear_spring {

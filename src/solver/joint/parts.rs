@@ -27,8 +27,6 @@ pub(super) mod slot {
 pub(super) enum Direction {
     /// The angle of B's frame relative to A's frame.
     Angle,
-    /// Like `Angle`, but between half a turn in either direction.
-    AngleWithinTurn,
     /// The position of B's anchor along the x axis of A's frame.
     Along,
     /// The position of B's anchor along the y axis of A's frame.

@@ -8,7 +8,7 @@ use super::super::row::{Lever, MassFractions, Row};
 use super::def::JointDef;
 use super::parts::Direction;
 use super::row::{Measure, NO_REACH};
-use super::state::{Joint, nearest_turns, radians};
+use super::state::{Joint, radians};
 use crate::body::Body;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, round_shift, saturate};
@@ -99,14 +99,13 @@ impl Ends {
     /// rows on the angle do not disturb each other. With the vector `c` from A's centre to B's, and the share
     /// `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, pose: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
-        let turns = self.turns(body_rotations);
-        let (share_a, _) = self.measure_angle(turns).row.shares();
+        let (share_a, _) = self.measure_angle(body_rotations).row.shares();
         let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
         let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
         // `to_b` leads from B's anchor to the balanced point. `to_a` leads from A's anchor to the point of A that would
         // coincide with it if the joint had no position error.
-        let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(turns)));
+        let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = pose.gap + to_b - to_a;
         JointPose {
@@ -126,11 +125,7 @@ impl Ends {
         body_rotations: &[BodyRotation],
     ) -> Measure {
         match direction {
-            Direction::Angle => self.measure_angle(self.turns(body_rotations)),
-            Direction::AngleWithinTurn => self.measure_angle(nearest_turns(
-                0,
-                Angle::from_turns(Fx::from_bits(self.turns(body_rotations))),
-            )),
+            Direction::Angle => self.measure_angle(body_rotations),
             Direction::Along => self.measure_axis(self.axis, pose, body_rotations),
             Direction::Across => self.measure_axis(self.axis.perp(), pose, body_rotations),
             Direction::AcrossBalanced => {
@@ -162,11 +157,16 @@ impl Ends {
         Measure { row, denominator, position, scale: Fx::ONE, reach: [a, b].map(Lever::ratio) }
     }
 
-    /// The row on the angle, at an angle in units of 2^-32 turn.
-    fn measure_angle(&self, turns: i64) -> Measure {
+    fn measure_angle(&self, body_rotations: &[BodyRotation]) -> Measure {
         let (row, denominator, scale) =
             Row::angular(self.inverse_gyration_a, self.inverse_gyration_b, self.fractions);
-        Measure { row, denominator, position: radians(turns), scale: scale.into(), reach: NO_REACH }
+        Measure {
+            row,
+            denominator,
+            position: radians(self.turns(body_rotations)),
+            scale: scale.into(),
+            reach: NO_REACH,
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use super::pose::BodyRotation;
 use crate::math::{Angle, Fx, Rot};
 use crate::simd::{Kernel, Lanes, Quad};
 
-const BLOCK: usize = 8;
+const BLOCK: usize = 16;
 
 pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
@@ -34,8 +34,7 @@ impl<const N: usize> Kernel<N> for Rotations<'_> {
             for ((body, angle), rotation) in block.iter().zip(angles).zip(rotations) {
                 let at = body.index as usize;
                 (body_rotations[at].angle, body_rotations[at].rotation) = (angle, rotation);
-                let Quad([cos, sin, ..]) = &mut quads[at];
-                (*cos, *sin) = (rotation.cos.to_bits(), rotation.sin.to_bits());
+                quads[at] = Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), 0, 0]);
             }
         }
     }

@@ -177,7 +177,7 @@ impl JointRow {
             RowTask::Spring { softness, target, lower, upper } => {
                 self.softness = match self.direction {
                     // `D` of a row on the angle is about 1 and does not depend on the pose.
-                    Direction::Angle | Direction::AngleWithinTurn => softness,
+                    Direction::Angle => softness,
                     _ => softness.at_mobility(denominator),
                 };
                 self.bias = self.softness.push(metres(position.saturating_sub(target)));

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
-use super::constraint::{JointSet, hinge_parts};
+use super::constraint::JointSet;
 use super::def::{JointDef, JointKind};
 use super::parts::slot;
 use crate::body::Body;
@@ -65,10 +65,7 @@ impl Joint {
     /// smaller, as after [`JointDef::fitted`].
     pub(crate) fn redefine(&mut self, def: JointDef, a: &Body, b: &Body) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
-        // The impulses of a rigid and of a soft weld have different meanings.
-        let same_impulses =
-            same_kind && hinge_parts(&def.kind).is_some() == hinge_parts(&self.def.kind).is_some();
-        if !same_impulses || !def.enabled {
+        if !same_kind || !def.enabled {
             self.impulses = JointImpulses::default();
         }
         *self.def = def;
@@ -131,9 +128,7 @@ impl Joint {
                 *impulse = Speed::ZERO;
             }
         }
-        let (force, torque) = joint.reaction(a, b, tuning);
-        // A part of a hinge exerts a torque only. The force is the reaction of the pin.
-        (if hinge_parts(&joint.def.kind).is_some() { Vec2::ZERO } else { force }, torque)
+        joint.reaction(a, b, tuning)
     }
 }
 

@@ -16,8 +16,7 @@ use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlappi
 use crate::world::state::State;
 
 impl World {
-    /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body, unless the
-    /// settings are the same.
+    /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or a value is out of range.
@@ -26,9 +25,6 @@ impl World {
     #[doc(alias = "bullet")]
     pub fn set_body(&mut self, id: BodyId, settings: &BodySettings) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
-        if *settings == body.settings {
-            return Ok(());
-        }
         settings.validate()?;
         let mass = mass_of(body.kind(), *body.mass_source, settings, self.shape_defs(body))?;
         wake_body(&mut self.state, &mut self.scratch, id.slot());
@@ -212,8 +208,7 @@ impl World {
     }
 
     /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
-    /// from its shapes, unless the mass was given. Wakes the body and the bodies near it, unless the definition is the
-    /// same. A change of `sensor` ends the contacts of the shape. If a change of
+    /// from its shapes, unless the mass was given. A change of `sensor` ends the contacts of the shape. If a change of
     /// the event switches affects [touching](crate::world::ContactView::touching) pairs, the next tick reports an end
     /// for each pair that has no events any more, and a begin for each pair that now has events and still touches.
     ///
@@ -224,9 +219,6 @@ impl World {
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
-        if *def == *shape.def {
-            return Ok(());
-        }
         let (body, slot) = (shape.body(), shape.body().slot());
         let owner = self.state.bodies.at(slot);
         def.validate(offset_max(owner.kind()))?;
@@ -297,7 +289,8 @@ impl World {
     /// no interior.
     #[doc(alias = "wind")]
     pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
-        self.change_shape(id, |def| def.area = area)
+        let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
+        if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
     /// Prepares for a change of the mass from 0 to a positive value or back. Contacts and joints with other bodies

@@ -59,16 +59,13 @@ impl World {
         Ok(())
     }
 
-    /// Replaces the world's gravity, in m/s². Wakes all bodies, unless the gravity is the same.
+    /// Replaces the world's gravity, in m/s². Wakes all bodies.
     ///
     /// # Errors
     /// [`WorldError::Setting`] if a component is not within ±100 000.
     pub fn set_gravity(&mut self, gravity: impl Into<Vec2<Fx>>) -> Result<(), WorldError> {
         let gravity = gravity.into();
         check_gravity(gravity)?;
-        if gravity == self.state.config.gravity {
-            return Ok(());
-        }
         self.wake_all();
         self.state.config.gravity = gravity;
         Ok(())

@@ -232,8 +232,7 @@ impl World {
     /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
     /// the surface speed of a belt. Call this after each [`World::step`]. Otherwise the character lags behind its lift,
     /// and is too fast when it leaves a body that [`World::move_to`] moves: the displacement in several ticks counts as
-    /// the displacement in one tick. Ground that [`World::set_transform`] places farther away than the speed limit allows
-    /// in a tick (6.7 m by default) leaves the character behind.
+    /// the displacement in one tick.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

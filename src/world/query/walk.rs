@@ -12,7 +12,7 @@ use crate::body::{BodyId, BodyKind, Handle, ShapeId};
 use crate::collision::{SKIN, SupportShape, distance};
 use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
-use crate::world::{Config, World};
+use crate::world::World;
 
 /// Largest number of casts in one stage of a move: carrying the character, pushing it out, sliding, or snapping to the
 /// ground.
@@ -88,8 +88,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Moves the character by as much as the point of its ground under its feet has moved since the last move. Shapes
-    /// of other bodies deflect this movement. Returns `None` if the body of the ground no longer exists, is disabled, or
-    /// has moved farther than its velocity and the speed limit allow in a tick, as a body that was placed elsewhere.
+    /// of other bodies deflect this movement. Returns `None` if the body of the ground no longer exists or is disabled.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -100,17 +99,12 @@ impl<'a> Walk<'a> {
         } else {
             body.position() + arm_now - ground.point
         };
-        let mut velocity = body.velocity_at(ground.point);
-        let Config { solver, tick_rate, .. } = &self.world.state.config;
-        let most = solver.speed_limit(*tick_rate).saturating_add(velocity.length());
-        if by.length() > most / i64::from(*tick_rate) {
-            return None;
-        }
         self.ride(by, ground.body);
         // The velocity of the body is preferred, because its displacement may cover several ticks or a teleport. If the
         // velocity of a kinematic body is 0, the displacement counts as the displacement in one tick. This is meant for
         // a body moved by `World::move_to`, but also applies to a body at rest that `World::set_transform` has placed
         // elsewhere.
+        let mut velocity = body.velocity_at(ground.point);
         if velocity == Vec2::ZERO && body.kind() == BodyKind::Kinematic {
             let rate = i64::from(self.world.state.config.tick_rate);
             velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));

@@ -4,8 +4,8 @@ use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
 /// Work units in each iteration of the solver for each joint that is solved in a block. The number allows for full
-/// blocks: a matrix of 96 rows, or a longer and narrower one, is factored for the bias pass and again for the relax
-/// pass, in several rounds if the block has limits or motors.
+/// blocks: a matrix of 96 rows is factored for the bias pass and again for the relax pass, in several rounds if the
+/// block has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
 /// Number of active contacts, whether or not they touch.

@@ -338,7 +338,7 @@ fn what_cannot_be_verified_says_what_it_needs() {
             3,
             "made with the rules \"adder\" version 3, this program has \"counter\" version 3",
         ),
-        (older, 2, "counter", 3, "made with engine semantics 2, this program has 26"),
+        (older, 2, "counter", 3, "made with engine semantics 2, this program has 25"),
     ] {
         let file = folder.write("a.replay", &bytes);
         let outcome = run(&["verify", "--json", &file]);

@@ -10,7 +10,7 @@
 //! - the sum of its shares over all hinges, without the largest share, is large ([`SUM_MIN`]).
 //!
 //! Joints of a crowded body are solved in a block if they have rows for a block. Crowded bodies with a common joint
-//! share a block, up to [`FULL_MAX`] rows, or up to [`ROWS_MAX`] rows if the matrix of the block stays narrow.
+//! share a block, up to [`ROWS_MAX`] rows.
 
 use alloc::vec::Vec;
 
@@ -22,17 +22,9 @@ use super::super::options::JointLimit;
 use super::super::state::Joint;
 use crate::math::{Fx, Unit, fx_mul};
 
-/// Largest number of rows of a block, whatever its matrix. The cost of a full matrix grows with the third power of the
-/// rows: a block of this size costs about as much as 5000 contacts.
-pub(super) const FULL_MAX: u32 = 96;
-
-/// Largest number of rows of a block with a narrow matrix.
-pub(super) const ROWS_MAX: u32 = 2048;
-
-/// Largest width of a block of more than [`FULL_MAX`] rows: how far before a row the rows with a common body begin. In
-/// an envelope (`matrix.rs`), the cost of a row grows with the square of this width. With this width it is 1.3 times
-/// the mean cost of a row in a full matrix of `FULL_MAX` rows, so that the cost of a joint has nearly the same bound.
-pub(super) const WIDTH_MAX: u32 = 64;
+/// Largest number of rows of a block. The cost of a full matrix grows with the third power of the rows: a block of this
+/// size costs about as much as 5000 contacts.
+pub(super) const ROWS_MAX: u32 = 96;
 
 /// A body is crowded if it has a share of at least this at each of two hinges.
 const PAIR_MIN: Unit = Unit::lit("0.6");
@@ -72,7 +64,10 @@ impl Candidate {
             JointKind::Wheel(kind) => {
                 (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
             }
-            JointKind::Distance(kind) => (kind.holding_rows(), kind.motor, false),
+            JointKind::Distance(kind) => {
+                let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
+                (parts + limits(kind.limit), kind.motor, false)
+            }
             JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
             JointKind::Motor(kind) => {
                 let linear = if kind.linear_spring.is_some() { 2 } else { 0 };
@@ -120,35 +115,6 @@ impl Crowd {
 /// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
-/// For each body, the first row with it in the current walk.
-#[derive(Clone, Debug, Default)]
-struct FirstRows {
-    walk: u32,
-    /// The number of the last walk that reached the body, and the first row in that walk.
-    of_body: Vec<(u32, u32)>,
-}
-
-impl FirstRows {
-    /// The first row with one of the bodies of a joint; `next` if there is none.
-    fn of(&self, joint: &Candidate, next: u32) -> u32 {
-        let rows = joint.bodies.map(|body| match self.of_body[body as usize] {
-            (walk, row) if walk == self.walk => row,
-            _ => next,
-        });
-        rows[0].min(rows[1])
-    }
-
-    /// Adds a joint whose first row is `row`. The ground connects no joints.
-    fn add(&mut self, joint: &Candidate, row: u32) {
-        for body in joint.bodies.into_iter().filter(|&body| body != GROUND) {
-            let first = &mut self.of_body[body as usize];
-            if first.0 != self.walk {
-                *first = (self.walk, row);
-            }
-        }
-    }
-}
-
 /// The joints of a crowded body, as ranges of `Choice::of_body`: one range for each number of rows.
 #[derive(Clone, Copy, Debug, Default)]
 struct JointsOfBody {
@@ -170,19 +136,13 @@ pub(super) struct Choice {
     taken: Vec<bool>,
     settled: Vec<bool>,
     queue: Vec<u32>,
-    first_rows: FirstRows,
+    walks: u32,
     /// Chosen candidates, block by block, in the order of elimination.
     pub(super) order: Vec<u32>,
     pub(super) block_ends: Vec<usize>,
 }
 
 const NOT_CROWDED: u32 = u32::MAX;
-
-/// Whether a block of `rows` rows takes `more` rows, which share a body with the row `first` and with no row before it.
-pub(super) fn fits(rows: u32, first: u32, more: u32) -> bool {
-    let rows = rows + more;
-    rows <= FULL_MAX || rows <= ROWS_MAX && rows - first <= WIDTH_MAX
-}
 
 impl Choice {
     /// Chooses the joints and divides them among blocks. Takes time proportional to the number of joints, even if very
@@ -199,9 +159,7 @@ impl Choice {
             flags.clear();
             flags.resize(candidates.len(), false);
         }
-        self.first_rows.walk = 0;
-        self.first_rows.of_body.clear();
-        self.first_rows.of_body.resize(body_count, (0, 0));
+        self.walks = 0;
         for first in 0..candidates.len() {
             let is_chosen = candidates[first].rows > 0
                 && candidates[first].bodies.iter().any(|&body| self.places[body as usize] != NOT_CROWDED);
@@ -288,33 +246,33 @@ impl Choice {
 
     /// Lists the joints that crowded bodies connect with `start`, breadth first, until the block is full.
     fn walk(&mut self, candidates: &[Candidate], start: u32) {
-        self.first_rows.walk += 1;
+        self.walks += 1;
         self.queue.clear();
         self.queue.push(start);
         self.taken[start as usize] = true;
-        self.first_rows.add(&candidates[start as usize], 0);
         let mut rows = candidates[start as usize].rows;
         let mut at = 0;
         while at < self.queue.len() {
             for body in candidates[self.queue[at] as usize].bodies {
-                if self.places[body as usize] != NOT_CROWDED {
-                    rows = self.take_joints_of(candidates, body, rows);
+                let place = self.places[body as usize];
+                if place != NOT_CROWDED {
+                    rows = self.take_joints_of(place, rows);
                 }
             }
             at += 1;
         }
     }
 
-    /// Adds the joints of a crowded body to the walk, in ascending order, unless they do not fit in the block. Takes
-    /// and returns the number of rows in the walk. A walk visits a body once.
-    fn take_joints_of(&mut self, candidates: &[Candidate], body: u32, mut rows: u32) -> u32 {
-        let Choice { places, bodies, of_body, taken, settled, queue, first_rows, .. } = self;
-        let JointsOfBody { next, ends, walk } = &mut bodies[places[body as usize] as usize];
-        if *walk == first_rows.walk {
+    /// Adds the joints of a body to the walk, in ascending order, as long as they fit in the block. Takes and returns
+    /// the number of rows in the walk. This number only grows during a walk, so a joint that does not fit is not tried
+    /// again.
+    fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
+        let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
+        let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];
+        if *walk == *walks {
             return rows;
         }
-        *walk = first_rows.walk;
-        let (_, first) = first_rows.of_body[body as usize];
+        *walk = *walks;
         for (next, &end) in next.iter_mut().zip(&*ends) {
             while *next < end && settled[of_body[*next as usize] as usize] {
                 *next += 1;
@@ -322,26 +280,22 @@ impl Choice {
         }
         let mut heads = *next;
         loop {
-            let mut next: Option<(u32, u32)> = None;
+            let mut first: Option<(u32, u32)> = None;
             for ((more, head), &end) in (1..).zip(&mut heads).zip(&*ends) {
-                if !fits(rows, first, more) {
+                if rows + more > ROWS_MAX {
                     break;
                 }
-                // The walk only grows, so a joint that does not fit will not fit later.
-                let is_out =
-                    |joint: usize| taken[joint] || !fits(rows, first_rows.of(&candidates[joint], rows), more);
-                while *head < end && is_out(of_body[*head as usize] as usize) {
+                while *head < end && taken[of_body[*head as usize] as usize] {
                     *head += 1;
                 }
                 if *head < end {
                     let joint = of_body[*head as usize];
-                    next = Some(next.map_or((joint, more), |next| next.min((joint, more))));
+                    first = Some(first.map_or((joint, more), |first| first.min((joint, more))));
                 }
             }
-            let Some((joint, more)) = next else { return rows };
+            let Some((joint, more)) = first else { return rows };
             taken[joint as usize] = true;
             queue.push(joint);
-            first_rows.add(&candidates[joint as usize], rows);
             rows += more;
         }
     }

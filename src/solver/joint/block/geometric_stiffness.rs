@@ -59,7 +59,7 @@ impl Blocks {
         // In the first sub-step, the impulses of the last tick are known, but the rows on which they act are not
         // computed yet.
         if core::mem::take(&mut self.is_first_sub_step) {
-            self.add_pin_reactions(hinges, list);
+            self.refresh(hinges, list);
         }
         for block in &mut self.blocks {
             if block.update_inertia(&rotation_of) {

@@ -28,7 +28,6 @@ mod choice;
 mod geometric_stiffness;
 mod matrix;
 mod mobility;
-mod pin_reaction;
 mod scales;
 mod scaling;
 mod solve;
@@ -36,12 +35,12 @@ mod solve;
 mod tests;
 mod unit;
 
-use alloc::{vec, vec::Vec};
+use alloc::vec::Vec;
 
 use super::super::context::{Pass, StepContext};
 use super::hinge::{HingeSet, Poses};
 use super::list::{BlockedPart, BlockedTask, JointList};
-use crate::math::{Fx, Speed, round_shift, round_shift_wide, saturate, saturate_wide};
+use crate::math::{Fx, Speed, round_shift, saturate};
 use bounds::BoundedUnit;
 pub(super) use choice::Candidate;
 use choice::Choice;
@@ -230,39 +229,37 @@ impl Block {
 
     fn arrange(&mut self) {
         let Block { units, pairs, rows, matrix, x, bias, impulses, wanted, bodies, places, .. } = self;
-        let moved = |unit: &Unit| [0, 1].map(|side: usize| unit.moved(side).map(|(body, _)| body));
-        let mut sorted: Vec<u32> = units.iter().flat_map(moved).flatten().collect();
-        sorted.sort_unstable();
-        sorted.dedup();
-        bodies.extend(sorted.iter().map(|&body| (body, [0; 3])));
-        let mut units_of_body = vec![Vec::new(); sorted.len()];
-        let mut partners = Vec::new();
         let mut first_columns = Vec::with_capacity(bias.scales.len());
-        for (at, unit) in (0u32..).zip(units.iter()) {
-            let own = moved(unit).map(|body| body.and_then(|body| sorted.binary_search(&body).ok()));
-            partners.clear();
-            for place in own.into_iter().flatten() {
-                partners.extend_from_slice(&units_of_body[place]);
-                units_of_body[place].push(at);
+        for (at, unit) in (0..).zip(units.iter()) {
+            let mut first = unit.row;
+            for (earlier, other) in (0..=at).zip(units.iter()) {
+                if earlier == at || unit.touches(other) {
+                    first = first.min(other.row);
+                    // The scaling of a spring between two points already makes its two rows independent.
+                    if earlier != at || !unit.is_point_spring() {
+                        pairs.push((at, earlier));
+                    }
+                }
             }
-            partners.sort_unstable();
-            partners.dedup();
-            let earlier = partners.iter().filter(|&&partner| partner < at);
-            let first = earlier.clone().map(|&partner| units[partner as usize].row).min();
-            pairs.extend(earlier.map(|&partner| (at, partner)));
-            // The scaling of a spring between two points already makes its two rows independent.
-            if !unit.is_point_spring() {
-                pairs.push((at, at));
-            }
-            first_columns.extend(unit.rows().map(|_| first.unwrap_or(unit.row)));
-            let place = |place: Option<usize>| u32::try_from(place.unwrap_or(0)).expect("few bodies");
-            places.push(own.map(place));
+            first_columns.extend(unit.rows().map(|_| first));
         }
         *matrix = Matrix::new(first_columns);
         rows.resize(bias.scales.len(), ScaledRow::default());
         x.resize(bias.scales.len(), 0);
         impulses.resize(bias.scales.len(), 0);
         wanted.resize(bias.scales.len(), 0);
+        places.extend(units.iter().map(|unit| {
+            [0, 1].map(|side: usize| {
+                unit.moved(side).map_or(0, |(body, _)| {
+                    let known = bodies.iter().position(|&(other, _)| other == body);
+                    let place = known.unwrap_or_else(|| {
+                        bodies.push((body, [0; 3]));
+                        bodies.len() - 1
+                    });
+                    u32::try_from(place).expect("a block has a handful of bodies")
+                })
+            })
+        }));
     }
 
     fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
@@ -303,7 +300,6 @@ impl Block {
     /// for geometric stiffness, or as initial guesses if the joint leaves the block.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
-        self.add_pin_reactions(hinges, 1);
         for unit in &self.units {
             let mut impulses = [0; 3];
             for (part, row) in unit.range().enumerate() {

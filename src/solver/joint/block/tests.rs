@@ -1,7 +1,7 @@
 use std::vec;
 use std::vec::Vec;
 
-use super::choice::{Candidate, Choice, FULL_MAX, ROWS_MAX, WIDTH_MAX, fits};
+use super::choice::{Candidate, Choice, ROWS_MAX};
 use super::matrix::{Factor, Matrix, ONE};
 use super::mobility::Mobility;
 use super::scaling::{Scaling, root_and_inverse};
@@ -121,108 +121,34 @@ fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
     assert_eq!(chosen(&[weld([0, 1]), weld([0, 2]), weld([0, 3])]), Vec::<u32>::new());
 }
 
-/// The sizes of the blocks of welds, in rows.
-fn block_sizes(candidates: &[Candidate], bodies: usize) -> Vec<usize> {
-    let mut choice = Choice::default();
-    choice.choose(candidates, bodies);
-    let starts = core::iter::once(0).chain(choice.block_ends.iter().copied());
-    let sizes = choice.block_ends.iter().zip(starts).map(|(&end, start)| 3 * (end - start)).collect();
-    choice.order.sort_unstable();
-    assert!(choice.order.iter().map(|&joint| joint as usize).eq(0..candidates.len()), "a joint is lost");
-    sizes
-}
-
-/// A chain has a narrow matrix, and the matrix of a hub is full.
 #[test]
-fn no_block_grows_beyond_its_limits_and_no_joint_is_lost() {
-    for count in [2, 3, 31, 32, 33, 100, 682, 683, 2000] {
-        let chain: Vec<Candidate> = (1..=count).map(|body| weld([body, body + 1])).collect();
-        let sizes = block_sizes(&chain, 3000);
-        assert!(sizes.iter().all(|&rows| rows <= ROWS_MAX as usize), "{count} welds: {sizes:?}");
-        // A longer chain may be cut twice, because a block starts again at its rim.
-        let is_whole = 3 * count <= ROWS_MAX;
-        assert_eq!(sizes.len() == 1, is_whole, "{count} welds: {sizes:?}");
-        let hub: Vec<Candidate> = (2..count + 2).map(|body| weld([1, body])).collect();
-        let sizes = block_sizes(&hub, 3000);
-        assert!(sizes.iter().all(|&rows| rows <= FULL_MAX as usize), "{count} welds: {sizes:?}");
-        assert_eq!(sizes.len(), count.div_ceil(FULL_MAX / 3) as usize, "{count} welds: {sizes:?}");
-    }
-}
-
-/// In a block of more than 96 rows, rows with a common body are near each other, also around holes and in random
-/// graphs.
-#[test]
-fn the_matrix_of_a_large_block_is_narrow() {
-    let mut rng = Rng::new(25);
-    let plate = |columns: u32, rows: u32, shift: u32| {
-        let body = move |x: u32, y: u32| 1 + y * columns + x;
-        let across =
-            (0..rows).flat_map(move |y| (1..columns).map(move |x| weld([body(x - 1, y), body(x, y)])));
-        let up = (1..rows).flat_map(move |y| {
-            (0..columns).map(move |x| weld([body((x + shift * y) % columns, y - 1), body(x, y)]))
-        });
-        across.chain(up).collect::<Vec<_>>()
-    };
-    let random: Vec<_> = (0..675)
-        .map(|_| {
-            let a = 1 + rng.below(450);
-            weld([a, 1 + (a + rng.below(449)) % 450])
-        })
-        .collect();
-    let mut large = 0;
-    for candidates in [plate(40, 12, 0), plate(20, 10, 1), plate(24, 12, 7), plate(9, 70, 0), random] {
+fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
+    for count in 2..200 {
+        let candidates: Vec<Candidate> = (1..=count).map(|body| weld([body, body + 1])).collect();
         let mut choice = Choice::default();
-        choice.choose(&candidates, 1000);
+        choice.choose(&candidates, 300);
         let mut start = 0;
         for &end in &choice.block_ends {
-            let joints = &choice.order[start..end];
+            assert!(3 * (end - start) <= ROWS_MAX as usize, "{} joints in a block", end - start);
             start = end;
-            if 3 * joints.len() <= FULL_MAX as usize {
-                continue;
-            }
-            large += 1;
-            for (at, joint) in joints.iter().enumerate() {
-                let bodies = candidates[*joint as usize].bodies;
-                let meets = |other: &&u32| {
-                    candidates[**other as usize].bodies.iter().any(|body| bodies.contains(body))
-                };
-                let last = joints.iter().rposition(|other| meets(&other)).expect("itself");
-                assert!(3 * (last + 1 - at) <= WIDTH_MAX as usize, "{} rows", 3 * (last + 1 - at));
-            }
         }
+        choice.order.sort_unstable();
+        assert!(choice.order.iter().copied().eq(0..count), "{count} welds: {:?}", choice.order);
     }
-    assert!(large > 5, "{large} large blocks");
 }
 
 /// Blocks by their definition: breadth first, with a scan over all joints for each body.
 fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut taken = vec![false; candidates.len()];
-    // Number of rows from the first joint of a walk with a body of a joint to the end of the walk.
-    let width = |queue: &[u32], joint: u32| {
-        let bodies = candidates[joint as usize].bodies;
-        let meets = |other: &u32| {
-            candidates[*other as usize].bodies.iter().any(|body| *body != 0 && bodies.contains(body))
-        };
-        let first = queue.iter().position(meets).unwrap_or(queue.len());
-        queue[first..].iter().map(|&joint| candidates[joint as usize].rows).sum::<u32>()
-    };
     let walk = |start: u32, taken: &mut Vec<bool>| {
         let (mut queue, mut at) = (vec![start], 0);
-        let mut visited = Vec::new();
         taken[start as usize] = true;
         let mut rows = candidates[start as usize].rows;
         while at < queue.len() {
             for body in candidates[queue[at] as usize].bodies.into_iter().filter(|&body| crowded(body)) {
-                if visited.contains(&body) {
-                    continue;
-                }
-                visited.push(body);
                 for (joint, candidate) in (0..).zip(candidates) {
                     let is_there = candidate.rows > 0 && candidate.bodies.contains(&body);
-                    if is_there
-                        && !taken[joint as usize]
-                        && fits(rows, rows - width(&queue, joint), candidate.rows)
-                    {
+                    if is_there && !taken[joint as usize] && rows + candidate.rows <= ROWS_MAX {
                         taken[joint as usize] = true;
                         rows += candidate.rows;
                         queue.push(joint);

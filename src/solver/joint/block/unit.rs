@@ -36,7 +36,7 @@ pub(super) struct RowSoftness {
 /// One or two rows that are scaled together, and the row on the angle of a hinge.
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
-    pub(super) source: Source,
+    source: Source,
     /// Index of the first row.
     pub(super) row: usize,
     /// Bodies from which velocities are read.
@@ -125,6 +125,11 @@ impl Unit {
         let mut own = [0; 2];
         self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
         own
+    }
+
+    /// Whether an impulse of one unit changes a velocity that the other measures.
+    pub(super) fn touches(&self, other: &Unit) -> bool {
+        self.common_sides(other).iter().any(Option::is_some)
     }
 
     /// Pairs of sides, one of each unit, with a common body.

@@ -1,30 +1,22 @@
 //! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`.
 //!
 //! ```text
-//! vn = eB uB - eA uA,   w = massScale vn + push,   L' = clamp(L - w / s - impulseScale L, lo, hi),   d = L' - L
-//! spring: L' = clamp(L - (w + impulseScale L) / (impulseScale + massScale s), -max, max)
+//! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
+//! uA -= fA d,  uB += fB d
 //! ```
-//!
-//! `s` takes account of the pin, whose reaction is applied together with `d` (`pinned.rs`). The softness of limits and
-//! of rows that hold the angle is relative to the inertia of the pinned bodies. The stiffness of a spring is relative to
-//! the inertia of the bodies about their centres of mass, so that it does not depend on the pose.
 
 mod blocked;
-mod drive;
-mod pinned;
 
 use super::super::super::context::Pass;
 use super::super::super::limits::Faults;
-use super::super::super::pair::{BodyPairW, RATIO, UNIT, beyond, clamp};
+use super::super::super::pair::{BodyPairW, RATIO, UNIT, clamp};
 use super::super::super::softness::Softness;
 use super::super::parts::slot;
 use super::super::pose::BodyRotation;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
-use super::batch::Batch;
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
-use pinned::Pinned;
 
 /// The rows of a batch. Lanes without a row have gains of 0 or bounds of 0.
 #[derive(Clone, Debug)]
@@ -32,10 +24,6 @@ use pinned::Pinned;
 pub(in crate::solver) struct AngleRows<const N: usize> {
     e: [Ints<N>; 2],
     f: [Ints<N>; 2],
-    pinned: Pinned<N>,
-    /// Whether `pinned` belongs to the current pose. It is computed on demand, because most rows are limits that are
-    /// not reached.
-    is_pinned: bool,
     spring: SpringRow<N>,
     drive: DriveRow<N>,
     /// The lower and the upper limit. The row of the upper limit is reversed.
@@ -88,8 +76,6 @@ impl<const N: usize> AngleRows<N> {
     pub(super) const NONE: Self = AngleRows {
         e: [Ints::ZERO; 2],
         f: [Ints::ZERO; 2],
-        pinned: Pinned::NONE,
-        is_pinned: false,
         has_spring: false,
         has_drive: false,
         has_limit: false,
@@ -168,7 +154,6 @@ impl<const N: usize> AngleRows<N> {
     /// Computes the pushes of springs and limits at the current pose. `turns` are the joint angles at the start of the
     /// tick, in units of 2^-32 turn.
     pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
-        self.is_pinned = false;
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
             let position = turn.wrapping_add(b.turns).wrapping_sub(a.turns);
@@ -192,40 +177,17 @@ impl<const N: usize> AngleRows<N> {
     }
 
     #[inline(always)]
-    pub(super) fn warm_start<L: Lanes<N>>(
-        &mut self,
-        batch: &Batch<N>,
-        pair: &mut BodyPairW<L, N>,
-        faults: &mut Faults,
-    ) {
-        let [lower, upper] = [0, 1].map(|side: usize| L::load(&self.limits[side].lambda));
-        let (spring, drive) = (L::load(&self.spring.lambda), L::load(&self.drive.lambda));
-        for impulse in [spring, drive, lower, L::sub(L::splat(0), upper)] {
-            self.turn(batch, pair, impulse, faults);
+    pub(super) fn warm_start<L: Lanes<N>>(&self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
+        if self.has_spring {
+            pair.turn(&self.f, L::load(&self.spring.lambda), faults);
         }
-    }
-
-    /// Applies a change of an impulse.
-    #[inline(always)]
-    fn turn<L: Lanes<N>>(
-        &mut self,
-        batch: &Batch<N>,
-        pair: &mut BodyPairW<L, N>,
-        d: L::Int,
-        faults: &mut Faults,
-    ) {
-        if L::any(beyond::<L, N>(d, L::splat(0))) {
-            self.pin::<L>(batch);
-            pair.turn(&self.pinned, d, faults);
+        if self.has_drive {
+            pair.turn(&self.f, L::load(&self.drive.lambda), faults);
         }
-    }
-
-    #[inline(always)]
-    fn pin<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
-        if !self.is_pinned {
-            self.is_pinned = true;
-            let scales = [&self.spring.mass_scale, &self.spring.impulse_scale];
-            self.pinned.update::<L>(batch, [&self.e, &self.f], scales);
+        if self.has_limit {
+            let [lower, upper] = &self.limits;
+            pair.turn(&self.f, L::load(&lower.lambda), faults);
+            pair.turn(&self.f, L::sub(L::splat(0), L::load(&upper.lambda)), faults);
         }
     }
 
@@ -234,60 +196,87 @@ impl<const N: usize> AngleRows<N> {
         &mut self,
         pass: Pass,
         softness: &Softness,
-        batch: &Batch<N>,
         pair: &mut BodyPairW<L, N>,
         faults: &mut Faults,
     ) {
         if self.has_spring && (pass == Pass::Bias || self.holds) {
-            self.solve_spring(pass, batch, pair, faults);
+            self.solve_spring(pass, pair, faults);
         }
+        self.solve_drive(pair, faults);
+        self.solve_limits(pass, softness, pair, faults);
+    }
+
+    #[inline(always)]
+    pub(super) fn solve_drive<L: Lanes<N>>(&mut self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         if self.has_drive {
-            self.solve_drive(batch, pair, faults);
+            let target = self.drive_target::<L>();
+            let DriveRow { lambda, max, .. } = &mut self.drive;
+            let (old, max) = (L::load(lambda), L::load(max));
+            let w = L::sub_saturating(velocity::<L, N>(&self.e, max, pair, faults), target);
+            let new = clamp::<L, N>(L::sub_saturating(old, w), max);
+            L::store(new, lambda);
+            pair.turn(&self.f, L::sub(new, old), faults);
         }
+    }
+
+    /// Target speed, clamped to the speeds at which the limits may be approached (see `Parts::drive_within`).
+    #[inline(always)]
+    fn drive_target<L: Lanes<N>>(&self) -> L::Int {
+        let zero = L::splat(0);
+        let speed = L::sub(zero, L::load(&self.drive.bias));
+        if !self.has_limit {
+            return speed;
+        }
+        // A saturated push may be the smallest number, whose negative does not fit.
+        let push = |limit: &LimitRow<N>| L::max(L::load(&limit.push), L::splat(-i32::MAX));
+        let [behind, ahead] = self.limits.each_ref().map(push);
+        let within = L::max(L::min(speed, ahead), L::sub(zero, behind));
+        L::select(L::greater(L::load(&self.limit_max), zero), within, speed)
+    }
+
+    #[inline(always)]
+    fn solve_limits<L: Lanes<N>>(
+        &mut self,
+        pass: Pass,
+        softness: &Softness,
+        pair: &mut BodyPairW<L, N>,
+        faults: &mut Faults,
+    ) {
         if self.has_limit {
-            self.solve_limit(0, pass, softness, batch, pair, faults);
-            self.solve_limit(1, pass, softness, batch, pair, faults);
+            self.solve_limit(0, pass, softness, pair, faults);
+            self.solve_limit(1, pass, softness, pair, faults);
         }
     }
 
     /// Solves springs in the bias pass, and rows that hold the angle in both passes.
     #[inline(always)]
-    fn solve_spring<L: Lanes<N>>(
-        &mut self,
-        pass: Pass,
-        batch: &Batch<N>,
-        pair: &mut BodyPairW<L, N>,
-        faults: &mut Faults,
-    ) {
-        self.pin::<L>(batch);
-        let [w, give] = self.wanted_of_spring(pass, pair, faults);
-        let SpringRow { lambda, max, holds, .. } = &self.spring;
-        let (old, max, held) = (L::load(lambda), L::load(max), L::negative(L::load(holds)));
-        let rigid = L::add_saturating(self.pinned.impulse_of::<L>(w), give);
-        let elastic = self.pinned.spring_impulse_of::<L>(L::add_saturating(w, give));
-        let new = clamp::<L, N>(L::sub_saturating(old, L::select(held, rigid, elastic)), max);
-        L::store(new, &mut self.spring.lambda);
-        self.turn(batch, pair, L::sub(new, old), faults);
+    fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
+        let w = self.wanted_of_spring(pass, pair, faults);
+        let SpringRow { lambda, max, .. } = &mut self.spring;
+        let (old, max) = (L::load(lambda), L::load(max));
+        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
+        L::store(new, lambda);
+        pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// `w` and `impulseScale L`.
     #[inline(always)]
     fn wanted_of_spring<L: Lanes<N>>(
         &self,
         pass: Pass,
         pair: &BodyPairW<L, N>,
         faults: &mut Faults,
-    ) -> [L::Int; 2] {
+    ) -> L::Int {
         let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &self.spring;
-        let (max, zero, held) = (L::load(max), L::splat(0), L::negative(L::load(holds)));
-        let solved = if pass == Pass::Bias { max } else { L::select(held, max, zero) };
+        let (old, max) = (L::load(lambda), L::load(max));
+        let held = L::negative(L::load(holds));
+        let solved = if pass == Pass::Bias { max } else { L::select(held, max, L::splat(0)) };
         let vn = velocity::<L, N>(&self.e, solved, pair, faults);
         match pass {
-            Pass::Bias => [
-                L::add_saturating(scaled::<L, N>(L::load(mass_scale), vn), L::load(push)),
-                scaled::<L, N>(L::load(impulse_scale), L::load(lambda)),
-            ],
-            Pass::Relax => [L::select(held, vn, zero), zero],
+            Pass::Bias => {
+                let scales = [L::load(mass_scale), L::load(impulse_scale)];
+                L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
+            }
+            Pass::Relax => L::select(held, vn, L::splat(0)),
         }
     }
 
@@ -299,38 +288,31 @@ impl<const N: usize> AngleRows<N> {
         side: usize,
         pass: Pass,
         softness: &Softness,
-        batch: &Batch<N>,
         pair: &mut BodyPairW<L, N>,
         faults: &mut Faults,
     ) {
         let zero = L::splat(0);
-        let LimitRow { lambda, push, open, .. } = &self.limits[side];
+        let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
         let max = L::load(&self.limit_max);
         let vn = velocity::<L, N>(&self.e, max, pair, faults);
         let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
         let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
-        let [w, give] = match pass {
+        let w = match pass {
             Pass::Bias => {
                 let mass_scale =
                     L::select(open, L::splat(Unit::ONE.to_bits()), L::splat(softness.mass_scale.to_bits()));
-                let give = scaled::<L, N>(L::splat(softness.impulse_scale.to_bits()), old);
-                [L::add_saturating(scaled::<L, N>(mass_scale, vn), push), L::select(open, zero, give)]
+                let impulse_scale = L::select(open, zero, L::splat(softness.impulse_scale.to_bits()));
+                L::add_saturating(softened::<L, N>([mass_scale, impulse_scale], vn, old), push)
             }
             Pass::Relax => {
-                let untouched = L::both(open, L::greater(L::splat(1), old));
                 let w = L::add_saturating(vn, L::select(open, push, zero));
-                [L::select(untouched, zero, w), zero]
+                let untouched = L::both(open, L::greater(L::splat(1), old));
+                L::select(untouched, zero, w)
             }
         };
-        // Without an impulse so far, and with `w` of 0 or more, the impulse stays 0.
-        let wanted = L::both(L::greater(max, zero), L::greater(zero, w));
-        if L::any(L::either(L::greater(old, zero), wanted)) {
-            self.pin::<L>(batch);
-            let change = L::add_saturating(self.pinned.impulse_of::<L>(w), give);
-            let new = L::min(L::max(L::sub_saturating(old, change), zero), max);
-            L::store(new, &mut self.limits[side].lambda);
-            self.turn(batch, pair, facing::<L, N>(side, L::sub(new, old)), faults);
-        }
+        let new = L::min(L::max(L::sub_saturating(old, w), zero), max);
+        L::store(new, lambda);
+        pair.turn(&self.f, facing::<L, N>(side, L::sub(new, old)), faults);
     }
 }
 
@@ -340,10 +322,14 @@ fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
     if side == 0 { value } else { L::sub(L::splat(0), value) }
 }
 
-/// A number times a scale, which is at most 1.
+/// `massScale v + impulseScale L`, where the scales add up to 1.
 #[inline(always)]
-fn scaled<L: Lanes<N>, const N: usize>(scale: L::Int, value: L::Int) -> L::Int {
-    L::narrow::<UNIT>(L::mul(scale, value))
+fn softened<L: Lanes<N>, const N: usize>(
+    [mass_scale, impulse_scale]: [L::Int; 2],
+    v: L::Int,
+    lambda: L::Int,
+) -> L::Int {
+    L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
 /// Angular velocity of B relative to A, as a speed. In lanes in which `max` is above 0 (the lanes with a row), a

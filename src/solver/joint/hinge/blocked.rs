@@ -108,12 +108,6 @@ impl HingeSet {
         [point[0], point[1], angle]
     }
 
-    /// See [`AngleRows::spread`]. 0 if the hinge has no rows on the angle.
-    pub(in super::super) fn blocked_spread(&self, number: usize) -> [i64; 2] {
-        let e = self.blocked_hinge(number).e;
-        self.blocked_rows(number).map_or([0; 2], |rows| rows.spread(e))
-    }
-
     fn blocked_rows(&self, number: usize) -> Option<&AngleRows<1>> {
         self.blocked_extras[number].map(|extra| &self.blocked.extras[extra])
     }

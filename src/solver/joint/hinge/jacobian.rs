@@ -1,7 +1,7 @@
 //! Velocity changes by impulses of hinges.
 
 use super::super::super::limits::Faults;
-use super::super::super::pair::{BodyPairW, UNIT, beyond};
+use super::super::super::pair::{BodyPairW, HALF, UNIT, beyond, clamp};
 use super::batch::Batch;
 use crate::simd::{Ints, Lanes, VelocityW};
 
@@ -38,6 +38,37 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         let VelocityW { x, y, turn } = self.b;
         let add = L::add_saturating;
         self.b = VelocityW { x: add(x, b.x), y: add(y, b.y), turn: add(turn, b.turn) };
+    }
+
+    /// Changes the spins by impulses on the angle of less than 1024 m/s.
+    #[inline(always)]
+    pub(super) fn turn(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
+        // Most rows on the angle are limits that are not reached.
+        if !L::any(beyond::<L, N>(d, L::splat(0))) {
+            return;
+        }
+        if L::any(beyond::<L, N>(d, L::splat(HALF - 1))) {
+            self.turn_in_steps(f, d, faults);
+        } else {
+            self.turn_step(f, d, faults);
+        }
+    }
+
+    #[inline(always)]
+    fn turn_step(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
+        self.a.turn = L::sub(self.a.turn, L::narrow::<UNIT>(L::mul(L::load(&f[0]), d)));
+        self.b.turn = L::add(self.b.turn, L::narrow::<UNIT>(L::mul(L::load(&f[1]), d)));
+        self.keep_in_range(faults);
+    }
+
+    /// Applies impulses above 512 m/s, as when a motor reverses or a held body is released.
+    #[cold]
+    fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
+        for _ in 0..3 {
+            let step = clamp::<L, N>(d, L::splat(HALF - 1));
+            self.turn_step(f, step, faults);
+            d = L::sub(d, step);
+        }
     }
 }
 

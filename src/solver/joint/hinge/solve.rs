@@ -1,5 +1,4 @@
-//! Solve: one iteration over the point block of `point_block.rs`, and then over the rows on the angle. Impulses on the
-//! angle do not move the anchors apart (`angle/pinned.rs`), so that the point stays solved.
+//! Solve: one iteration over the rows on the angle and over the point block of `point_block.rs`.
 //!
 //! ```text
 //! bias pass    vr = vB - vA + eMB uB - eMA uA,   w = massScale (vr + bias) + impulseScale L
@@ -34,6 +33,9 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
         // Local copies, so that the compiler sees that writing to the batch does not change them.
         let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        if let Some(rows) = angle {
+            rows.solve(pass, &stiffness.limits, &mut pair, faults);
+        }
         let (e_a, e_b) = ratios_of::<L, N>(batch, pass, quads);
         let vr = relative_velocity::<L, N>(e_a, e_b, &pair, faults);
         let d = [
@@ -41,9 +43,6 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
             accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
         ];
         pair.apply_at_point(batch, d, faults);
-        if let Some(rows) = angle {
-            rows.solve(pass, &stiffness.limits, batch, &mut pair, faults);
-        }
         pair.store(bodies, &batch.changed);
     }
 }

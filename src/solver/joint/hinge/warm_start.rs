@@ -19,7 +19,7 @@ impl Operation<Hinges> for WarmStart<'_> {
         self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
-            rows.warm_start(batch, &mut pair, faults);
+            rows.warm_start(&mut pair, faults);
         }
         let limit = L::splat(STEP_MAX.to_bits());
         let lambda = [L::load(&batch.lambda[0]), L::load(&batch.lambda[1])];

@@ -7,7 +7,7 @@ use super::super::super::super::softness::Softness;
 use super::super::super::list::BlockedTask;
 use super::super::blocked::BlockedAngle;
 use super::{AngleRows, SpringRow, velocity};
-use crate::math::{Ratio, Speed, Unit, Vec2, round_shift};
+use crate::math::{Ratio, Speed, Unit, round_shift};
 use crate::simd::{Ints, Lanes};
 
 impl AngleRows<1> {
@@ -28,21 +28,7 @@ impl AngleRows<1> {
         pair: &BodyPairW<L, 1>,
         faults: &mut Faults,
     ) -> L::Int {
-        if !self.has_spring {
-            return L::splat(0);
-        }
-        let [wanted, _] = self.wanted_of_spring(pass, pair, faults);
-        wanted
-    }
-
-    /// The components of the velocity at which an impulse of 1 on the angle moves the anchors apart: `q` in
-    /// `pinned.rs`, with 24 fraction bits.
-    pub(in super::super) fn spread(&self, e: [Vec2<Ratio>; 2]) -> [i64; 2] {
-        let [a, b] = self.f.each_ref().map(|f| i64::from(f.0[0]));
-        let part = |e_a: Ratio, e_b: Ratio| {
-            round_shift(a * i64::from(e_a.to_bits()) + b * i64::from(e_b.to_bits()), Unit::FRAC_NBITS)
-        };
-        [part(e[0].x, e[1].x), part(e[0].y, e[1].y)]
+        if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
     }
 
     pub(in super::super) fn has_blocked_limits(&self) -> bool {
